@@ -289,7 +289,8 @@ bool dose_label(struct annotations *annotations, const struct snapshot *snapshot
     if (!snapshot_is_pane(snapshot) || !isoline_scene_init(&lines, snapshot))
         return true;
     /* upright words in the font of the picture */
-    bool is_good = isoline_labels_place(&labels, snapshot, &lines, annotate_text_px(width_px) * scale, true, err);
+    bool is_good = isoline_labels_place(&labels, snapshot, &lines, annotate_text_px(width_px) * scale,
+                                        ISOLINE_LABELS_UPRIGHT, err);
     struct annotation_label *grown =
         is_good ? realloc(annotations->labels, (annotations->n_labels + labels.n + 1) * sizeof *grown) : NULL;
     if (is_good && !grown)

@@ -33,7 +33,8 @@ cJSON *answer_isolines(struct question *question, struct derive *derived, struct
     struct error err = { 0 };
     (void)derived;
     bool has_lines = isoline_scene_init(&lines, snapshot);
-    if (has_lines && !isoline_labels_place(&labels, snapshot, &lines, question->packet.isolines.text_px, false, &err)) {
+    enum isoline_labels_for what = question->packet.isolines.choice ? ISOLINE_LABELS_CHOICE : ISOLINE_LABELS_TURNED;
+    if (has_lines && !isoline_labels_place(&labels, snapshot, &lines, question->packet.isolines.text_px, what, &err)) {
         isoline_scene_finish(&lines);
         (void)problem_from_error(problem, &err);
         return NULL;

@@ -72,6 +72,19 @@ for (const [kind, size] of [
     }
   });
 
+test('with choice a level has many places on its lines, the best one first, of the same size', async () => {
+  const view = { kind: 'axial', size_px: [1024, 768], override: { dose: { quantity: 'gamma', levels, lines: { visible: true } } } };
+  const answer = await call(`${plan}/dose/isolines?text_px=12&choice=true&view=${encodeURIComponent(JSON.stringify(view))}`);
+  const usual = await ask([1024, 768], 'axial');
+  for (const [at, { labels }] of answer.json.levels.entries()) {
+    assert.ok(labels.length > usual.json.levels[at].labels.length, answer.text);
+    for (const [i, label] of labels.entries()) {
+      for (const [x, y] of corners(label)) assert.ok(x >= 0 && y >= 0 && x <= 1024 && y <= 768, JSON.stringify(label));
+      for (const other of labels.slice(0, i)) assert.ok(!overlap(label, other), 'of one level none lies over another');
+    }
+  }
+});
+
 test('low panes and views into space have levels and no labels, a scene without lines has none of both', async () => {
   for (const [kind, size] of [
     ['axial', [800, 239]],

@@ -163,7 +163,7 @@ export const tours = {
     const { scene_revision: old } = await header(page, 2);
     await page.locator('#tab-panel [aria-label="Weights of"]').selectOption({ label: 'as brain' });
     await page.locator('#tab-panel [aria-label="Reference: what 100 % is"]').selectOption('region-max brain');
-    await page.locator('[data-view="2"] .dose-legend', { hasText: 'brain max' }).waitFor();
+    await page.locator('.dose-legend', { hasText: 'brain max' }).waitFor();
     for (const view of [1, 2, 3, 4]) await newer(page, view, old + 1);
     await page.locator('.dose-legend.old, .dose-legend .old').first().waitFor({ state: 'detached' });
     await settled(page);
@@ -251,7 +251,7 @@ export const tours = {
       (n) => n > 0,
     );
     await settled(page);
-    await page.locator('[data-view="2"] .dose-legend').waitFor();
+    await page.locator('.dose-legend').waitFor();
     await shot(page, 'accepted');
   },
 

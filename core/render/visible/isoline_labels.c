@@ -6,7 +6,12 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/region/target.h"
+#include "core/render/visible/cut.h"
+#include "core/render/visible/visible.h"
 #include "core/scene/camera.h"
+
+enum { MAX_USUAL = 96 }; /* labels of a picture that are all drawn */
 
 void isoline_text(char text[ISOLINE_TEXT_SIZE], const struct scene_dose_level *level, const char *unit)
 {
@@ -34,18 +39,25 @@ struct lines_px {
     size_t n_lines, n_points, capacity;
 };
 
+static bool reserve(struct lines_px *all, size_t n_points, struct error *err)
+{
+    if (all->n_points + n_points <= all->capacity)
+        return true;
+    size_t capacity = 2 * (all->n_points + n_points);
+    double(*grown)[2] = realloc(all->points, capacity * sizeof *grown);
+    if (!grown)
+        return error_set(err, ERROR_MEMORY, "no memory for %zu points of isodose lines", capacity);
+    all->points = grown;
+    all->capacity = capacity;
+    return true;
+}
+
 /* Appends a level's lines. Those beyond the room for lines have no labels. */
 static bool add_level(struct lines_px *all, const struct isolines *traced, const struct mat4 *px_from_uv, int group,
                       double width_px, struct error *err)
 {
-    if (all->n_points + traced->n_points > all->capacity) {
-        size_t capacity = 2 * (all->n_points + traced->n_points);
-        double(*grown)[2] = realloc(all->points, capacity * sizeof *grown);
-        if (!grown)
-            return error_set(err, ERROR_MEMORY, "no memory for %zu points of isodose lines", capacity);
-        all->points = grown;
-        all->capacity = capacity;
-    }
+    if (!reserve(all, traced->n_points, err))
+        return false;
     for (size_t l = 0, at = 0; l < traced->n_lines; at = traced->ends[l++]) {
         if (all->n_lines == sizeof all->lines / sizeof all->lines[0])
             break;
@@ -90,15 +102,57 @@ static bool trace_levels(struct lines_px *all, const struct snapshot *snapshot, 
     return is_good;
 }
 
+/* Appends the outline of a region, as lines that no label may lie over. */
+static bool add_outline(struct lines_px *all, const struct snapshot *snapshot, const struct camera *camera,
+                        size_t region, struct error *err)
+{
+    struct cut_region cut;
+    struct mask *mask = NULL;
+    struct cut_lines outline = { 0 };
+    if (!cut_region_init(&cut, &snapshot->plan->regions, region, err))
+        return false;
+    bool is_good = cut_univels(&cut, &snapshot->pane, &mask, err) &&
+                   (!mask || cut_outlines(mask, OUTLINE_MARCHING_SQUARES, &outline, err)) &&
+                   reserve(all, 2 * outline.n, err);
+    bool has_room = is_good && all->n_lines < sizeof all->lines / sizeof all->lines[0];
+    if (has_room)
+        all->lines[all->n_lines++] = (struct label_line){ .n_points = 2 * outline.n, .group = LABEL_KEPT_FREE };
+    for (size_t i = 0; has_room && i < outline.n; i++)
+        for (int end = 0; end < 2; end++) {
+            const double *p = outline.ends_lps_mm[i][end];
+            struct vec3 clip = mat4_project(&camera->clip_from_lps_mm, vec3(p[0], p[1], p[2]));
+            all->points[all->n_points][0] = (clip.x + 1) / 2 * snapshot->view.size_px[0];
+            all->points[all->n_points++][1] = (1 - clip.y) / 2 * snapshot->view.size_px[1];
+        }
+    cut_lines_finish(&outline);
+    mask_destroy(mask);
+    cut_region_finish(&cut);
+    return is_good;
+}
+
+static bool add_targets(struct lines_px *all, const struct snapshot *snapshot, const struct camera *camera,
+                        struct error *err)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    bool is_good = true;
+    for (size_t i = 0; is_good && i < set->n_regions; i++)
+        if (region_is_target(&set->regions[i]) && visible_is_drawn(snapshot, i))
+            is_good = add_outline(all, snapshot, camera, i, err);
+    return is_good;
+}
+
 static bool place(struct isoline_labels *labels, const struct snapshot *snapshot, const struct isoline_scene *lines,
-                  struct lines_px *all, double text_px, bool is_upright, struct error *err)
+                  struct lines_px *all, double text_px, enum isoline_labels_for what, struct error *err)
 {
     struct label_place places[ISOLINE_MAX_LABELS];
+    const struct label_style style = { .height_px = 1.2 * text_px,
+                                       .is_upright = what == ISOLINE_LABELS_UPRIGHT,
+                                       .is_choice = what == ISOLINE_LABELS_CHOICE };
     size_t at = 0;
     for (size_t i = 0; i < all->n_lines; at += all->lines[i++].n_points)
         all->lines[i].points_px = (const double(*)[2])all->points + at;
-    int n = label_places_find(all->lines, all->n_lines, snapshot->view.size_px[0], snapshot->view.size_px[1],
-                              1.2 * text_px, is_upright, places, ISOLINE_MAX_LABELS, err);
+    int n = label_places_find(all->lines, all->n_lines, snapshot->view.size_px[0], snapshot->view.size_px[1], &style,
+                              places, style.is_choice ? ISOLINE_MAX_LABELS : MAX_USUAL, err);
     for (int i = 0; i < n; i++)
         labels->labels[labels->n++] =
             (struct isoline_label){ lines->levels[all->lines[places[i].line].group].index, places[i] };
@@ -106,7 +160,8 @@ static bool place(struct isoline_labels *labels, const struct snapshot *snapshot
 }
 
 bool isoline_labels_place(struct isoline_labels *labels, const struct snapshot *snapshot,
-                          const struct isoline_scene *lines, double text_px, bool is_upright, struct error *err)
+                          const struct isoline_scene *lines, double text_px, enum isoline_labels_for what,
+                          struct error *err)
 {
     struct camera camera;
     struct isoline_lattice lattice;
@@ -124,7 +179,8 @@ bool isoline_labels_place(struct isoline_labels *labels, const struct snapshot *
     struct dose_plane *plane = all ? dose_plane_create(lines->doses[0].field, &samples, err) : NULL;
     struct mat4 px_from_uv = pixels_of(snapshot, &camera, &samples.lps_mm_from_uv);
     bool is_good = plane && trace_levels(all, snapshot, lines, plane, &px_from_uv, text_px, err) &&
-                   place(labels, snapshot, lines, all, text_px, is_upright, err);
+                   (what != ISOLINE_LABELS_CHOICE || add_targets(all, snapshot, &camera, err)) &&
+                   place(labels, snapshot, lines, all, text_px, what, err);
     dose_plane_destroy(plane);
     if (all)
         free(all->points);

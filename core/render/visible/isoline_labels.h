@@ -4,7 +4,7 @@
 #include "core/render/visible/isoline_scene.h"
 #include "core/render/visible/label_places.h"
 
-enum { ISOLINE_MAX_LABELS = 96, ISOLINE_TEXT_SIZE = 56 };
+enum { ISOLINE_MAX_LABELS = 384, ISOLINE_TEXT_SIZE = 56 };
 /* A pane that is lower has no labels. */
 enum { ISOLINE_LABELS_MIN_PX = 240 };
 
@@ -23,8 +23,12 @@ void isoline_text(char text[ISOLINE_TEXT_SIZE], const struct scene_dose_level *l
 double isoline_text_width_px(const char *text, double text_px);
 
 /* Places the labels of a slice pane's lines, of the dose shown; none in 3-D and in low panes. lines: of the snapshot.
- * text_px: size of the font on the full-size picture. is_upright: the labels are not turned with the lines. errors
- * ERROR_MEMORY */
+ * text_px: size of the font on the full-size picture. errors ERROR_MEMORY */
+enum isoline_labels_for {
+    ISOLINE_LABELS_UPRIGHT, /* not turned with the lines */
+    ISOLINE_LABELS_TURNED,
+    ISOLINE_LABELS_CHOICE, /* turned; many places of each level, none over the outline of a visible target */
+};
 NODISCARD bool isoline_labels_place(struct isoline_labels *labels, const struct snapshot *snapshot,
-                                    const struct isoline_scene *lines, double text_px, bool is_upright,
+                                    const struct isoline_scene *lines, double text_px, enum isoline_labels_for what,
                                     struct error *err);

@@ -11,21 +11,22 @@
 static const double stride_px = 6;     /* between the places that are rated */
 static const double margin_px = 3;     /* around labels, and to the picture's edges */
 static const double apart_px = 480;    /* along a line, from label to label */
+static const double choice_px = 24;    /* the same of places to choose from */
 static const double least_chord = 0.9; /* of the line's length under the label */
 static const double most_bend = 0.6;   /* of the label's height */
-enum { CELL_PX = 4, MAX_ON_LINE = 4 };
+enum { CELL_PX = 4, MAX_ON_LINE = 4, MAX_CHOICE = 24 };
+static const uint64_t kept_free = UINT64_C(1) << 32; /* the bit of LABEL_KEPT_FREE, beside those of 32 groups */
 
 /* Which groups have lines in each cell of the picture. */
 struct occupancy {
-    uint32_t *groups;
+    uint64_t *groups;
     int width, height;
 };
 
 /* The style that all labels share. */
 struct style {
     double size_px[2]; /* of the picture */
-    double height_px;  /* of a label */
-    bool is_upright;
+    struct label_style label;
 };
 
 struct walk {
@@ -34,16 +35,22 @@ struct walk {
     bool is_closed;
 };
 
+static uint64_t bit_of(int group)
+{
+    return group == LABEL_KEPT_FREE ? kept_free : UINT64_C(1) << (group & 31);
+}
+
 static void mark(struct occupancy *cells, double x, double y, int group)
 {
     int i = (int)floor(x / CELL_PX), j = (int)floor(y / CELL_PX);
     if (i >= 0 && j >= 0 && i < cells->width && j < cells->height)
-        cells->groups[(size_t)j * (size_t)cells->width + (size_t)i] |= 1u << (group & 31);
+        cells->groups[(size_t)j * (size_t)cells->width + (size_t)i] |= bit_of(group);
 }
 
 static void mark_line(struct occupancy *cells, const struct label_line *line)
 {
-    for (size_t i = 1; i < line->n_points; i++) {
+    const size_t step_points = line->group == LABEL_KEPT_FREE ? 2 : 1;
+    for (size_t i = 1; i < line->n_points; i += step_points) {
         const double *a = line->points_px[i - 1], *b = line->points_px[i];
         int n = (int)fmin(ceil(hypot(b[0] - a[0], b[1] - a[1]) / CELL_PX), 4096);
         for (int step = 0; step <= n; step++) {
@@ -130,7 +137,7 @@ bool label_places_overlap(const struct label_place *a, const struct label_place 
     return overlap(a, b, 0);
 }
 
-/* How many of some points of the label lie near lines of other groups. */
+/* How many of some points of the label lie near lines of other groups; -1: one lies near a line that is kept free. */
 static int n_crossed(const struct occupancy *cells, const struct label_place *place, int group)
 {
     double corners[4][2];
@@ -143,8 +150,12 @@ static int n_crossed(const struct occupancy *cells, const struct label_place *pl
                 at[axis] = corners[0][axis] + s * (corners[1][axis] - corners[0][axis]) +
                            t * (corners[2][axis] - corners[0][axis]);
             int x = (int)floor(at[0] / CELL_PX), y = (int)floor(at[1] / CELL_PX);
-            n += x >= 0 && y >= 0 && x < cells->width && y < cells->height &&
-                 (cells->groups[(size_t)y * (size_t)cells->width + (size_t)x] & ~(1u << (group & 31))) != 0;
+            if (x < 0 || y < 0 || x >= cells->width || y >= cells->height)
+                continue;
+            uint64_t here = cells->groups[(size_t)y * (size_t)cells->width + (size_t)x];
+            if (here & kept_free)
+                return -1;
+            n += (here & ~bit_of(group)) != 0;
         }
     return n;
 }
@@ -162,19 +173,22 @@ static bool make_place(const struct walk *walk, const struct occupancy *cells, d
     place->x_px = (a[0] + b[0]) / 2;
     place->y_px = (a[1] + b[1]) / 2;
     place->width_px = walk->line->width_px;
-    place->height_px = style->height_px;
-    place->angle_deg = style->is_upright ? 0 : atan2(dy, dx) * 180 / PI;
+    place->height_px = style->label.height_px;
+    place->angle_deg = style->label.is_upright ? 0 : atan2(dy, dx) * 180 / PI;
     place->angle_deg -= place->angle_deg > 90 ? 180 : place->angle_deg <= -90 ? -180 : 0;
     corners_of(place, margin_px, corners);
     for (int i = 0; i < 4; i++)
         if (!(corners[i][0] >= 0 && corners[i][1] >= 0 && corners[i][0] <= style->size_px[0] &&
               corners[i][1] <= style->size_px[1]))
             return false;
-    if ((bend = bend_px(walk, at, half)) > most_bend * style->height_px)
+    if ((bend = bend_px(walk, at, half)) > most_bend * style->label.height_px)
+        return false;
+    int crossed = n_crossed(cells, place, walk->line->group);
+    if (crossed < 0)
         return false;
     double far = walk->is_closed ? 2 * half : fmin(fmin(2 * half, at), walk->length_px[walk->line->n_points - 1] - at);
-    *cost = (bend + 0.3 * bend_px(walk, at, fmax(far, half))) / style->height_px + 0.1 * fabs(dy) / hypot(dx, dy) +
-            0.2 * n_crossed(cells, place, walk->line->group);
+    *cost = (bend + 0.3 * bend_px(walk, at, fmax(far, half))) / style->label.height_px +
+            0.1 * fabs(dy) / hypot(dx, dy) + 0.2 * crossed;
     return true;
 }
 
@@ -191,8 +205,10 @@ static int place_on(const struct walk *walk, const struct occupancy *cells, cons
                     struct label_place *places, int n, int max)
 {
     double whole = walk->length_px[walk->line->n_points - 1], half = walk->line->width_px / 2 + margin_px,
-           first = walk->is_closed ? 0 : half, last = walk->is_closed ? whole : whole - half, taken[MAX_ON_LINE];
-    int n_wanted = (int)fmin(fmax(1, floor(whole / apart_px)), MAX_ON_LINE), n_taken = 0;
+           first = walk->is_closed ? 0 : half, last = walk->is_closed ? whole : whole - half, taken[MAX_CHOICE],
+           apart = style->label.is_choice ? choice_px : apart_px;
+    const int most = style->label.is_choice ? MAX_CHOICE : MAX_ON_LINE, others = style->label.is_choice ? n : 0;
+    int n_wanted = (int)fmin(fmax(1, floor(whole / apart)), most), n_taken = 0;
     while (whole >= LABEL_LENGTHS * walk->line->width_px && n_taken < n_wanted && n < max) {
         struct label_place best = { 0 };
         double least = INFINITY, best_at = 0;
@@ -202,10 +218,10 @@ static int place_on(const struct walk *walk, const struct occupancy *cells, cons
             bool is_near = false;
             for (int i = 0; i < n_taken; i++) {
                 double gap = fabs(at - taken[i]);
-                is_near |= fmin(gap, walk->is_closed ? whole - gap : gap) < apart_px / 2;
+                is_near |= fmin(gap, walk->is_closed ? whole - gap : gap) < apart / 2;
             }
             if (is_near || !make_place(walk, cells, at, style, &place, &cost) || cost >= least ||
-                !is_free(&place, places, n))
+                !is_free(&place, places + others, n - others))
                 continue;
             least = cost;
             best = place;
@@ -220,9 +236,9 @@ static int place_on(const struct walk *walk, const struct occupancy *cells, cons
 }
 
 int label_places_find(const struct label_line *lines, size_t n_lines, double width_px, double picture_height_px,
-                      double height_px, bool is_upright, struct label_place *places, int max, struct error *err)
+                      const struct label_style *label, struct label_place *places, int max, struct error *err)
 {
-    const struct style style = { { width_px, picture_height_px }, height_px, is_upright };
+    const struct style style = { { width_px, picture_height_px }, *label };
     struct occupancy cells = { .width = (int)ceil(width_px / CELL_PX),
                                .height = (int)ceil(picture_height_px / CELL_PX) };
     size_t most = 0;
@@ -236,7 +252,7 @@ int label_places_find(const struct label_line *lines, size_t n_lines, double wid
     for (size_t l = 0; n >= 0 && l < n_lines; l++) {
         const struct label_line *line = &lines[l];
         struct walk walk = { line, length_px, false };
-        if (line->n_points < 2)
+        if (line->n_points < 2 || line->group == LABEL_KEPT_FREE)
             continue;
         for (size_t i = 1; i < line->n_points; i++)
             length_px[i] = length_px[i - 1] + hypot(line->points_px[i][0] - line->points_px[i - 1][0],

@@ -7,11 +7,14 @@
 
 #include "core/base/error.h"
 
+/* The group of what has no labels and may not lie under one: its points are pairs, the ends of segments. */
+enum { LABEL_KEPT_FREE = -1 };
+
 /* A line to be labelled. Lines before others get the better places. */
 struct label_line {
     const double (*points_px)[2]; /* y down; a closed line ends with the point that it begins with */
     size_t n_points;
-    int group;       /* 0..31: lines of other groups near a label make its place worse */
+    int group;       /* 0..31: lines of other groups near a label make its place worse; LABEL_KEPT_FREE */
     double width_px; /* of its label */
 };
 
@@ -29,9 +32,14 @@ bool label_places_overlap(const struct label_place *a, const struct label_place 
 /* Chooses places: whole labels within the picture, none over another, along the straightest stretches of their lines,
  * away from lines of other groups. A line shorter than LABEL_LENGTHS labels has none, a long one has several. Returns
  * how many, at most max; -1 on failure.
- *   height_px   of every label
- *   is_upright  labels are not turned with their lines
- *   errors      ERROR_MEMORY */
+ *   style   of every label
+ *   errors  ERROR_MEMORY */
 #define LABEL_LENGTHS 2.5
+struct label_style {
+    double height_px;
+    bool is_upright; /* labels are not turned with their lines */
+    /* Many places of each line, the best one first, to choose one from: those of different groups may overlap. */
+    bool is_choice;
+};
 int label_places_find(const struct label_line *lines, size_t n_lines, double width_px, double picture_height_px,
-                      double height_px, bool is_upright, struct label_place *places, int max, struct error *err);
+                      const struct label_style *style, struct label_place *places, int max, struct error *err);

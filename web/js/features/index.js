@@ -29,7 +29,7 @@ import { tracks } from './tracks/feature.js';
  * @property {Tab[]} [tabs] of the inspector
  * @property {Record<string, (world, at: number, event: KeyboardEvent) => void>} [keys] commands of the active pane, by their name in room/commands.js
  * @property {(world, event: KeyboardEvent, at: number) => (() => void)|null} [key] what another key does there
- * @property {(world) => unknown} [bar] above the panes
+ * @property {(world) => unknown} [bar] above the panes @property {(world) => unknown} [legend] below the bars, or at the right of the panes
  * @property {{has: (plan) => boolean, draw: (world) => unknown}} [drawer] beside the panes
  * @property {(world) => unknown} [dialog] over the page @property {string[]} [dialogs] the popovers that it shows as dialogs
  * @property {{mode, show, meet, end}} [strip] buttons: (world, size or isDock) => template. mode: tools of the left button, show: what pictures show,

@@ -80,7 +80,9 @@ export function makeApi(fetch, base = '/api/v1') {
       call('GET', `plans/${id(plan)}/${question}?${new URLSearchParams({ room, view: JSON.stringify(view), ...parameters })}`, { signal }),
     /** Where the labels of a slice pane's isodose lines stand on its picture. */
     isolines: (plan, room, view, textPx, signal) =>
-      call('GET', `plans/${id(plan)}/dose/isolines?room=${id(room)}&view=${id(JSON.stringify(view))}&text_px=${textPx}`, { signal }),
+      call('GET', `plans/${id(plan)}/dose/isolines?room=${id(room)}&view=${id(JSON.stringify(view))}&text_px=${textPx}&choice=true`, {
+        signal,
+      }),
     histogram: (plan, image) => call('GET', `plans/${id(plan)}/images/${id(image)}/histogram`),
     ellipse: (plan, image, [centre, a, b]) => call('GET', `plans/${id(plan)}/images/${id(image)}/ellipse?center=${centre}&a=${a}&b=${b}`),
     surface: (plan, region, query, signal) =>

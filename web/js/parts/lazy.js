@@ -52,7 +52,7 @@ export function known(lazy) {
   return module;
 }
 
-const forwarded = ['layer', 'lines', 'key', 'start', 'move', 'end', 'tap', 'doubleTap', 'hover'];
+const forwarded = ['layer', 'lines', 'head', 'key', 'start', 'move', 'end', 'tap', 'doubleTap', 'hover'];
 
 /**
  * The part of a feature in a pane (PanePart of features/index.js), made when there is something for it; until then it draws and takes nothing.

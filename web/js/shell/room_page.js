@@ -44,7 +44,7 @@ const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">${say.toPanes}</a>
   <header class="banner"></header><aside class="tree" aria-label=${say.plan}></aside>
   <section class="strip" aria-label=${say.tools}></section>
-  <main><div class="switch"></div><div class="dose-bars"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><section class="chart-drawer" aria-label=${say.plots}></section><div class="toasts"></div></main>
+  <main><div class="switch"></div><div class="dose-bars"></div><div class="legends"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><section class="chart-drawer" aria-label=${say.plots}></section><div class="toasts"></div></main>
   <aside class="inspector" aria-label=${say.inspector}></aside><footer class="status"></footer><div class="floating"></div></div>`;
 
 /**
@@ -111,6 +111,7 @@ export function roomPage(
       '.dose-bars',
       () => html`${world.room.files.value ? filesBar.draw((loaded) => loaded.filesBar(world)) : nothing}${partsOf('bar', world)}`,
     ],
+    ['.legends', () => html`${partsOf('legend', world)}`],
     ['.chart-drawer', drawer],
     ['.inspector', inspector],
     ['.status', status],

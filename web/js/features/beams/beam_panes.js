@@ -9,7 +9,7 @@ import { stepAcross } from '../../room/obliques.js';
 import { shownImage } from '../../room/plan.js';
 import { beamFoot } from './beam_foot.js';
 import { showInstead, spaceInstead } from './beam_view.js';
-import { ringHandle, ringNumbers } from './beam_ring.js';
+import { ringHandle, ringNumbers, ringWords } from './beam_ring.js';
 import { millimetres } from '../../parts/format.js';
 import { say } from './pane_words.js';
 
@@ -131,6 +131,9 @@ class BeamSlice extends AlongBeam {
   }
 }
 
+const ringHead = ({ ring, beside }) =>
+  html`<span class="beam-aperture" title=${`${ring}, ${beside}`}><b>${ring}</b><span class="dim">, ${beside}</span></span>`;
+
 class BeamEye extends AlongBeam {
   get #mover() {
     const { ui } = this.pane;
@@ -226,7 +229,7 @@ class BeamEye extends AlongBeam {
     return {
       where: html`<button class="beam-lock" ?disabled=${isOff} title=${say.leave} @click=${(event) => this.unlock(event.timeStamp)}><span>${words}</span>${lock}</button>`,
       head: html`<button class="icon-button small beam-ring-toggle" aria-pressed=${ring !== null} aria-label=${say.ringName} ?disabled=${isOff} title=${ring === null ? say.ringOn : say.ringOff}
-        @click=${(event) => this.toggleRing(event.timeStamp)}>${ringPicture}</button>`,
+        @click=${(event) => this.toggleRing(event.timeStamp)}>${ringPicture}</button>${ring === null ? nothing : ringHead(ringWords(ring, beam))}`,
       overlay: place && ringNumbers(place, document.beam?.crosshair !== false),
       handles: place && ring !== null ? ringHandle(place, isOff, (mm, at) => this.setRing(mm, at)) : nothing,
       foot: beamFoot(

@@ -11,7 +11,6 @@ const numbersMm = [20, 40, 80];
 const nearMm = [5, 10]; // where those lie outside
 const [firstPx, leastPx] = [36, 22]; // from the middle to the first number, between two numbers
 const edgePx = 34; // kept free for the letters
-const charPx = 5.8; // of a caption, on average
 const diagonal = Math.SQRT1_2;
 const range = { low: 0.1, high: 2000 };
 const tidy = (mm) => Math.round(mm * 2) / 2; // a drag goes in halves of a millimetre
@@ -37,7 +36,6 @@ export function ringNumbers(place, hasCrosshair) {
   const {
     header,
     pane: [width, height],
-    ring,
   } = place;
   if (!frame) return nothing;
   const {
@@ -59,26 +57,22 @@ export function ringNumbers(place, hasCrosshair) {
           return svg`${text(x + r, y + 20, mm, 'middle')}${text(x - r, y + 20, mm, 'middle')}${text(x + 13, y - r + 4, mm, 'start')}${text(x + 13, y + r + 4, mm, 'start')}`;
         })
       : nothing
-  }${hasCrosshair && !(header.pixels_per_mm > 0) ? svg`<text class="halo caption beam-depth" x="12" y=${height - 12}>${say.atDepth}</text>` : nothing}
-    ${ring === null ? nothing : ringWords(frame, ring, place.beam, width)}`;
+  }${hasCrosshair && !(header.pixels_per_mm > 0) ? svg`<text class="halo caption beam-depth" x="12" y=${height - 12}>${say.atDepth}</text>` : nothing}`;
 }
 
 const handleAt = ({ middle: [x, y], pxPerMm }, ring) => [x + (ring / 2) * pxPerMm * diagonal, y - (ring / 2) * pxPerMm * diagonal];
 
-/** Words that compare the ring with the beam's aperture, from which it may differ. */
-function ringWords(frame, ring, { aperture, isShaped }, width) {
-  const [x, y] = handleAt(frame, ring);
+/** "ring 100 mm, as the aperture": the ring beside the beam's aperture, from which it may differ. */
+export function ringWords(ring, { aperture, isShaped }) {
   const isPlanned = aperture && Math.abs(ring - aperture) < 0.05;
-  const below = !aperture
+  const beside = !aperture
     ? isShaped
       ? say.notRound
       : say.notKnown
     : isPlanned
       ? say.asAperture
       : say.apertureIs({ mm: number(aperture, aperture % 1 ? 1 : 0) });
-  const isLeft = x + 20 + Math.max(18, below.length) * charPx > width;
-  const at = placed(isLeft ? x - 14 : x + 14);
-  return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${placed(y - 4)}>${say.ringOf({ mm: number(ring, ring % 1 ? 1 : 0) })}</text><text class="halo caption" x=${at} y=${placed(y + 10)}>${below}</text></g>`;
+  return { ring: say.ringOf({ mm: number(ring, ring % 1 ? 1 : 0) }), beside };
 }
 
 /** The round handle on the ring, up and to the right. @param {(mm: number, at: number) => void} set */

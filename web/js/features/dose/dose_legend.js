@@ -1,99 +1,78 @@
-// Legend of a picture with dose: its levels with colour, value and unit, its reference, and whether it may not belong.
-import { html, nothing } from '../../../lib/lit-html.js';
-import { doseName, isOn, missingWords, referenceWords, shownDose, unitOf } from '../../room/dose.js';
-import { levelsOf, percentOf, doseOf } from './level_list.js';
-import { gradientOf, hasLines, shownScale, washKind } from './dose_scales.js';
-import { isTarget } from '../../room/plan.js';
-import { isInSpace } from '../../room/kinds.js';
-import { toPicture } from '../../parts/vec.js';
+// The one dose legend of a room's panes: a strip above them or a column at their right, never on a picture.
+import { html, nothing, svg } from '../../../lib/lit-html.js';
+import { classMap } from '../../../lib/directives/class-map.js';
 import { ofFits } from '../fits/feature.js';
-import { number, significant } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';
+import { LegendGrip } from './legend_grip.js';
+import { legendPlace } from './legend_place.js';
+import { legendRows } from './legend_rows.js';
 import { say } from './drawn_words.js';
 
-const rowPx = 16;
-const [narrow, narrowest] = [320, 240]; // px: of a pane with the legend at its foot, and with one only while it is active
-const scaleRows = 4; // of the colours of a comparison or an error
-const besidesPx = 120; // of a pane: letters, scale, the other legends
+const grips = new WeakMap(); // of each page
+const gripOf = (world) => {
+  if (!grips.has(world.ui)) grips.set(world.ui, new LegendGrip(world));
+  return grips.get(world.ui);
+};
 
-/** @param {object} world {room, doses} @param {import('../../room/view.js').ViewState} view @param {[number, number]} size of the pane @param {boolean} isLeftTaken by another legend */
-export function doseLegend({ room, ui, doses }, view, [width, height], isLeftTaken) {
-  const is3d = isInSpace(view.kind);
+/** The rows of what the room's panes show. */
+export const rowsOf = ({ room, doses }) => {
   const [plan, scene] = [room.plan.value, room.scene.value];
-  const dose = shownDose(plan, scene);
-  const { result: answer, isOld } = doses.scale.value;
-  if (
-    !dose ||
-    !answer?.drawn ||
-    !doses.isOfScene(answer) ||
-    !isShown(scene, is3d) ||
-    (width < narrowest && !is3d && ui.active.value !== view.number)
-  )
-    return nothing;
-  const { surfaces, compare } = scene.dose;
-  const isWash = washKind(plan, scene) === 'levels';
-  const isLines = hasLines(plan, scene);
-  const reference = doses.reference.value;
-  const unit = unitOf(dose, scene.dose.quantity);
-  const isUsed = (level) =>
-    level.visible && ((level.wash && isWash) || (level.line && isLines) || (is3d && level.surface && surfaces.visible));
-  const all = levelsOf(scene, reference).filter(isUsed);
-  const scale = shownScale(plan, scene, reference, significant);
-  const most = Math.max(1, Math.floor((height - besidesPx) / 2 / rowPx) - 1 - (scale ? scaleRows : 0));
-  const levels = all.slice(0, all.length > most ? Math.max(1, most - 1) : most);
-  const words = referenceWords(plan, scene.dose.reference);
-  const notes = [missingWords(answer.missing ?? [])].filter(Boolean);
+  if (!plan || !scene?.dose) return [];
+  const scale = doses.scale.value;
+  return legendRows(plan, scene, {
+    scale,
+    gamma: doses.gamma.value,
+    reference: doses.reference.value,
+    isKnown: doses.isOfScene(scale.result),
+  });
+};
+
+/** Between the bars and the panes, or beside these. @param {object} world that of the room page */
+export function doseLegend(world) {
+  const rows = rowsOf(world);
+  if (!rows.length) return nothing;
+  const { ui, room } = world;
+  const place = legendPlace(world);
+  const { size } = ui.arrangement.value;
+  if (size === 'phone') return swatches(world, rows);
   const mark = ofFits(room)?.wordMark({ room }, ['dose']) ?? nothing;
-  const isLeft = !isLeftTaken && isAtRight(plan, view);
-  const place = width < narrow ? 'foot' : isLeft ? 'left' : '';
-  return html`<div class=${`legend dose-legend ${place}${scale ? ' scaled' : ''}${isOld ? ' old' : ''}`} role="group" aria-label=${say.dose}>
-    ${mark === nothing ? nothing : html`<p>${mark}</p>`}${notes.map((text) => html`<p class="warn">${icon('warning', 12)} ${text}</p>`)}${scale ? scaleLegend(scale, doses.gamma.value) : nothing}
-    ${all.length ? html`<p class="dose-legend-head"><span>${say.percentOf({ reference: words })}</span> <span>${unit}</span></p>` : nothing}
-    <ul>${levels.map((level) => html`<li><i class=${level.wash && isWash ? 'area' : 'line'} ${variables({ '--color': level.color })}></i><span>${number(percentOf(level, reference), isWhole(percentOf(level, reference)) ? 0 : 1)} %</span><span>${significant(doseOf(level, reference))}</span></li>`)}
-      ${all.length > levels.length ? html`<li class="dim">${say.lower({ n: all.length - levels.length })}</li>` : nothing}</ul>
-    ${compareWords(compare, plan)}</div>`;
+  const grip = gripOf(world);
+  const about = place.isOffered ? say.gripIs : say.gripClicks;
+  return html`<section class=${classMap({ 'dose-legend': true, 'in-column': place.isColumn, 'in-strip': !place.isColumn, [grip.towards.value]: Boolean(grip.towards.value) })} aria-label=${say.dose}>
+    <button class="legend-grip" title=${about} aria-label=${say.grip} @pointerdown=${grip.down} @pointermove=${grip.move} @pointerup=${grip.up} @pointercancel=${grip.cancel}
+      @click=${grip.click} @keydown=${grip.key}>${dots}</button>
+    <div class="legend-rows">${legendBody(rows, mark)}</div></section>`;
 }
 
-/** True if the first target, where most dose is, stands in the right half of the picture. */
-function isAtRight(plan, view) {
-  const target = plan.regions.find(isTarget);
-  const at = target?.center_mm && toPicture(view.painted.value.clip_from_lps_mm, target.center_mm);
-  return Boolean(at) && at[0] > 0.5;
+const dots = html`<svg viewBox="0 0 8 14" width="8" height="14" aria-hidden="true">${[0, 1].map((x) => [0, 1, 2].map((y) => svg`<circle cx=${2 + 4 * x} cy=${3 + 4 * y} r="1" />`))}</svg>`;
+
+/** On a telephone: colours alone; a tap has the list. */
+function swatches({ ui }, rows) {
+  const open = () => ui.choose('legend');
+  return html`<section class="dose-legend phone" aria-label=${say.dose}><button title=${say.list} aria-label=${say.list} @click=${open}>${rows.map(
+    (row) => (row.scale ? bar(row.scale) : row.levels.map(swatch)),
+  )}${icon('chevronRight')}</button></section>`;
 }
 
-const isWhole = (value) => Math.abs(value - Math.round(value)) < 0.05;
-
-/** True if a picture of this kind shows dose. In 3-D lines and wash lie on slices, caps and regions whose texture is dose. */
-function isShown(scene, is3d) {
-  const { wash, lines, surfaces, compare, coverage } = scene.dose;
-  if (!is3d) return isOn(scene) && (wash.visible || lines.visible || compare.mode !== 'none' || coverage.visible);
-  const hasPlane =
-    Object.values(scene.image.slices).some(({ visible }) => visible) ||
-    Object.values(scene.image.obliques ?? {}).some(({ visible }) => visible);
-  const hasCap = Object.values(scene.clip).some((plane) => plane?.enabled);
-  const hasTexture = Object.values(scene.regions).some(({ visible, texture }) => visible && texture === 'dose');
-  const isFlat = wash.visible || lines.visible || compare.mode !== 'none';
-  return (
-    surfaces.visible ||
-    coverage.visible ||
-    (isFlat && (hasPlane || hasCap)) ||
-    (wash.visible && (hasTexture || (wash.volume && scene.image.volume.visible)))
+/** The rows as they stand in a strip, a column or a list; data alone, so that a display can have them too. @param {import('./legend_rows.js').LegendRow[]} rows */
+export const legendBody = (rows, mark = nothing) =>
+  rows.map(
+    (
+      row,
+    ) => html`<div class=${classMap({ 'legend-row': true, old: row.isOld })} data-kind=${row.kind} role="group" aria-label=${row.quantity}>
+    ${mark === nothing ? nothing : html`<span class="legend-mark">${mark}</span>`}${row.warn ? html`<span class="legend-mark warn">${icon('warning', 12)} ${row.warn}</span>` : nothing}
+    <p class="legend-words" title=${row.whole}><b>${row.quantity}</b>${[row.weights, row.reference, row.more].filter(Boolean).map((words) => html`<span>${words}</span>`)}</p>
+    ${row.scale ? scaleOf(row) : nothing}${row.levels.length ? levelsOf(row) : nothing}</div>`,
   );
-}
 
-/** Names the second dose, whose lines are dashed. */
-function compareWords({ id, mode }, plan) {
-  const second = plan.doses.find((dose) => dose.id === id);
-  return second && (mode === 'lines' || mode === 'difference') ? html`<p>${say.dashed({ dose: doseName(second) })}</p>` : nothing;
-}
+const swatch = ({ color, isArea }) => html`<i class=${isArea ? 'area' : 'line'} ${variables({ '--color': color })}></i>`;
 
-/** The colours of a wash that is none of levels, with their ends; of how many voxels, once the server has counted them. */
-function scaleLegend({ kind, title, ends, about, more }, { result, error, isOld }) {
-  const why = kind === 'error' ? '' : error || (!isOld && result?.comparison_reason) || '';
-  if (why) return html`<p class="warn">${icon('warning', 12)} ${say.notCompared({ reason: why })}</p>`;
-  const domain = isOld || kind === 'error' ? null : result?.domain;
-  const words = domain ? say.counted({ about, n: number(domain.voxels), all: number(domain.all_voxels) }) : about;
-  return html`<p class="dose-scale-title" title=${more || nothing}>${title}</p><i class="dose-scale" ${variables({ '--scale': gradientOf(kind) })}></i>
-    <p class="dose-scale-ends">${ends.map((end) => html`<span>${end}</span>`)}</p>${about ? html`<p class="dim">${words}</p><span class="hidden">${more}</span>` : nothing}`;
-}
+const levelsOf = ({ levels, unit }) =>
+  html`<ul class="legend-levels"><li class="legend-unit">${say.unitOfLevels({ unit })}</li>${levels.map((level) => html`<li>${swatch(level)}<span>${level.percent}</span><span>${level.value}</span></li>`)}</ul>`;
+
+const bar = ({ gradient }) => html`<i class="legend-bar" ${variables({ '--scale': gradient })}></i>`;
+
+const scaleOf = ({ scale, domain, figures, whole }) =>
+  html`<div class="legend-scale">${bar(scale)}<p class="legend-ends">${scale.ends.map((end) => html`<span>${end}</span>`)}</p></div>
+    <p class="legend-domain" title=${whole}>${domain ? html`<span>${domain}</span>` : nothing}${figures ? html`<span>${figures}</span>` : nothing}</p>`;

@@ -1,37 +1,60 @@
 // The labels on isodose lines, over the picture of a slice pane.
 import { svg } from '../../../lib/lit-html.js';
 import { variables } from '../../parts/mount.js';
+import { legendPlace } from './legend_place.js';
 
-const sparePx = 2;
-const narrowest = 240; // px: narrower panes have no labels
+const [narrowest, lowest] = [320, 240]; // px: smaller panes have no labels
 const leastLuminance = 0.3; // of the letters, on their dark halo
+const [awayPx, sparePx] = [24, 3]; // from the middle of the crosshair, where there is a choice from its lines too; from marks and other labels
+const marks = [
+  '.legend',
+  '.overlay .letter',
+  '.overlay .scale',
+  '.overlay .caption',
+  '.overlay .dose-pin',
+  '.overlay.pointers > *',
+  '.note-pin',
+  '.clip-handle',
+  '.image-measures > *',
+  '.beam-handle',
+];
+const footPx = 28; // of the strip with scale and window
 
 /**
- * @param {{doses: object, view: object, host: HTMLElement, header: object, box: {x, y, width, height}}} what host: the pane, of which letters and
- *   legends are kept free; box: of the picture, CSS px
+ * At most one label of a level: the first of the server's places that keeps away from the crosshair and from what else is drawn over the picture.
+ * @param {{world: object, view: object, header: object, box: {x, y, width, height}}} what world: that of the pane, of which letters and marks
+ *   are kept free; box: of the picture, CSS px
  */
-export function lineLabels({ doses, view, host, header, box }) {
-  const levels = doses.labels.of(view);
-  if (!levels.length || host.clientWidth < narrowest) return '';
+export function lineLabels({ world, view, header, box }) {
+  const { doses, host } = world;
+  const levels = legendPlace(world).hasValues ? doses.labels.of(view) : [];
+  if (!levels.length || host.clientWidth < narrowest || host.querySelector('.picture').clientHeight < lowest) return '';
   const k = box.width / header.full_px[0];
   const taken = takenIn(host);
-  return svg`<g class="dose-labels">${levels.map(({ id, color, text, labels }) =>
-    labels.map(({ x_px: px, y_px: py, angle_deg: angle, width_px: width, height_px: height }) => {
-      const [x, y] = [box.x + px * k, box.y + py * k];
-      const [across, up] = extent(width * k, height * k, angle);
-      const isFree = taken.every(
-        (other) =>
-          x + across / 2 + sparePx < other.left ||
-          x - across / 2 - sparePx > other.right ||
-          y + up / 2 + sparePx < other.top ||
-          y - up / 2 - sparePx > other.bottom,
-      );
-      return isFree
-        ? svg`<text class="halo dose-line-label" data-level=${id} transform=${`translate(${x.toFixed(1)} ${y.toFixed(1)}) rotate(${angle.toFixed(1)})`} dy="0.35em" ${variables({ '--color': readable(color) })}>${text}</text>`
-        : '';
-    }),
+  const lines = boxesIn(host, '.overlay .crosshair > *');
+  const shown = [];
+  for (const { id, color, text, labels } of levels) {
+    const places = labels
+      .map(({ x_px: px, y_px: py, angle_deg: angle, width_px: width, height_px: height }) => {
+        const [x, y] = [box.x + px * k, box.y + py * k];
+        const [across, up] = extent(width * k, height * k, angle);
+        return { x, y, angle, left: x - across / 2, right: x + across / 2, top: y - up / 2, bottom: y + up / 2 };
+      })
+      .filter((place) => !taken.some((other) => isNear(place, other, other.away)));
+    const place =
+      places.find((one) => !lines.some((line) => isNear(one, line, awayPx))) ??
+      places.find((one) => !lines.some((line) => isNear(one, line, sparePx)));
+    if (!place) continue; // the legend says it
+    taken.push({ ...place, away: sparePx });
+    shown.push({ ...place, id, color, text });
+  }
+  return svg`<g class="dose-labels">${shown.map(
+    ({ id, color, text, x, y, angle }) =>
+      svg`<text class="halo dose-line-label" data-level=${id} transform=${`translate(${x.toFixed(1)} ${y.toFixed(1)}) rotate(${angle.toFixed(1)})`} dy="0.35em" ${variables({ '--color': readable(color) })}>${text}</text>`,
   )}</g>`;
 }
+
+const isNear = (a, b, away) => a.left < b.right + away && a.right > b.left - away && a.top < b.bottom + away && a.bottom > b.top - away;
 
 /** The colour, mixed with white until it can be read: blue is too dark for letters. */
 export function readable(color) {
@@ -50,11 +73,30 @@ function extent(width, height, angle) {
   return [width * c + height * s, width * s + height * c];
 }
 
-/** Boxes that no label may cover, in CSS px of the picture. */
-function takenIn(host) {
+/** Boxes of marks, in CSS px of the picture. */
+function boxesIn(host, names) {
   const picture = host.querySelector('.picture').getBoundingClientRect();
-  return [...host.querySelectorAll('.legend, .overlay .letter, .overlay .scale, .overlay .caption')].map((mark) => {
+  return [...host.querySelectorAll(names)].map((mark) => {
     const { left, right, top, bottom } = mark.getBoundingClientRect();
     return { left: left - picture.left, right: right - picture.left, top: top - picture.top, bottom: bottom - picture.top };
   });
+}
+
+/** Where no label stands: the foot, round the middle of the crosshair, letters, marks of people, of measures and of planes. */
+function takenIn(host) {
+  const { clientWidth: right, clientHeight: bottom } = host.querySelector('.picture');
+  const middles = boxesIn(host, '.overlay .crosshair').map((cross) => crossing(host, cross));
+  return [
+    { away: 0, left: 0, right, top: bottom - footPx, bottom },
+    ...middles.map((middle) => ({ ...middle, away: awayPx })),
+    ...boxesIn(host, marks.join()).map((mark) => ({ ...mark, away: sparePx })),
+  ];
+}
+
+/** Where the lines of the crosshair meet, as a box without a size. */
+function crossing(host, cross) {
+  const lines = boxesIn(host, '.overlay .crosshair > *');
+  const upright = lines.find(({ left, right, top, bottom }) => bottom - top > right - left) ?? cross;
+  const level = lines.find(({ left, right, top, bottom }) => bottom - top <= right - left) ?? cross;
+  return { left: upright.left, right: upright.right, top: level.top, bottom: level.bottom };
 }

@@ -8,7 +8,7 @@ import { ChartLoader, hasCharts } from './plots/chart_loader.js';
 import { say } from './words.js';
 
 const panels = later(() => import('./later_rows.js'));
-const drawn = later(() => import('./later_drawn.js'), 'js/features/dose/dose.css');
+const drawn = later(() => import('./later_drawn.js'), 'js/features/dose/dose.css', 'js/features/dose/legend.css');
 
 /** Exports of later_rows.js; null for a plan without doses, and until it is loaded. */
 const ofDose = (room) => (room.plan.value?.doses.length ? known(panels) : null);
@@ -67,8 +67,8 @@ export const dose = {
       rows: (world) => ofDose(world.room)?.doseRows(world),
     },
   ],
-  kinds: { dose: 'doses', quantity: 'doses', dosing: 'doses', level: 'doses' },
-  blocks: later(() => import('./later_blocks.js'), 'js/features/dose/dose.css'),
+  kinds: { dose: 'doses', quantity: 'doses', dosing: 'doses', level: 'doses', legend: '' },
+  blocks: later(() => import('./later_blocks.js'), 'js/features/dose/dose.css', 'js/features/dose/legend.css'),
   isSoon: true,
   tabs: [{ id: 'dvh', name: say.dvh, inSheet: hasCharts, draw: ({ charts }) => charts.draw('sheet') }],
   keys: { wash: toggle('wash'), lines: toggle('lines'), pin: withDose(pinHere) },
@@ -76,6 +76,7 @@ export const dose = {
   strip: {
     show: (world, size) => doseTools(world, (part, at) => ofDose(world.room)?.toggleDose(world.room, world.ui, part, at), size),
   },
+  legend: (world) => ofDrawnDose(world.room)?.doseLegend(world),
   bannerName: (world) => ofDose(world.room)?.doseBasis(world, 'below'),
   bannerFacts: (world) => ofDose(world.room)?.doseBasis(world, 'aside'),
   planParts: ({ room, charts }) => (room.plan.value.doses.length ? charts.draw('limits') : nothing),
@@ -88,8 +89,7 @@ export const dose = {
   pane: (world, view) => ({
     layer: ({ scene, plane, tolerance, header, box, pane }) => {
       const shown = ofDrawnDose(world.room);
-      return html`${shown?.lineLabels({ doses: world.doses, view, host: world.host, header, box })}${shown?.pinMarks({ scene, plane, tolerance, header, box, pane })}`;
+      return html`${shown?.lineLabels({ world, view, header, box })}${shown?.pinMarks({ scene, plane, tolerance, header, box, pane })}`;
     },
-    legend: (size, isLeftTaken) => ofDrawnDose(world.room)?.doseLegend(world, view, size, isLeftTaken),
   }),
 };

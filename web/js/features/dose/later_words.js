@@ -167,4 +167,14 @@ export const say = sentences('dose.later', {
   atLeast: 'at least {volume}',
   covered: '{share} of the region, {volume}',
   withoutDose: '{volume} of it have no dose.',
+  legend: 'Legend',
+  legendStands: 'Stands',
+  abovePanes: 'above panes',
+  rightOfPanes: 'right of panes',
+  legendLines: 'Lines',
+  withValues: 'with values',
+  withoutValues: 'without',
+  legendIs:
+    'Never on a picture. From 1600 px of width it can stand right of the panes: drag it by its grip. In snapshots and on paper it stands below the picture. The words of clip lines stand in the heads of the panes.',
+  noLegend: 'No dose is shown.',
 });

@@ -22,7 +22,7 @@ export const planes = {
       blocks,
       ({ PaneLines }) => {
         const lines = new PaneLines(room, ui, view, place);
-        return { lines: () => lines.draw() };
+        return { lines: () => lines.draw(), head: () => lines.head() };
       },
     );
   },

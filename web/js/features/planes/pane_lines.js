@@ -18,6 +18,7 @@ import {
 import { isInSpace } from '../../room/kinds.js';
 import { handleBox, heightsOver, keptPart, lineOf, namePlace, onLine, takenIn } from './plane_lines.js';
 import { fromPicture, subtract } from '../../parts/vec.js';
+import { clipChips } from './clip_chips.js';
 import { clipPosition } from '../clip/clip_rows.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';
@@ -64,25 +65,22 @@ export class PaneLines {
     this.#place = place;
   }
 
+  /** In the head of the pane: what the clip planes keep whose lines it has. */
+  head() {
+    const { pane } = this.#place();
+    const [plan, scene] = [this.#room.plan.value, this.#room.scene.value];
+    if (isInSpace(this.#view.kind) || !this.#view.painted.value || !scene?.clip || !plan || pane[0] < 2) return nothing;
+    const clips = this.#shown(plan, scene).filter(({ kind, cut }) => kind === 'clip' && cut);
+    return clipChips(clips, (id) => this.#ui.choose('clip', id));
+  }
+
   /** Below the letters: what is cut off, dimmed, and the lines. Above them: the handles. */
   draw() {
     const { box, pane } = this.#place();
-    const header = this.#view.painted.value;
     const [plan, scene] = [this.#room.plan.value, this.#room.scene.value];
-    if (isInSpace(this.#view.kind) || !header || !scene?.clip || !plan || pane[0] < 2) return { lines: nothing, handles: nothing };
-    const shown = this.#lines(plan, scene).map((line) => {
-      const heights = heightsOver(line.plane, header.clip_from_lps_mm, this.#slice(scene).origin, box);
-      const cut = lineOf(heights, box, this.#along.get(line.id));
-      if (cut) this.#along.set(line.id, cut.along);
-      return {
-        ...line,
-        heights,
-        cut,
-        at: cut && onLine(cut, line.part),
-        turnAt: cut && line.turnedTo && onLine(cut, turnPart),
-        isChosen: this.#isChosen(line),
-      };
-    });
+    if (isInSpace(this.#view.kind) || !this.#view.painted.value || !scene?.clip || !plan || pane[0] < 2)
+      return { lines: nothing, handles: nothing };
+    const shown = this.#shown(plan, scene);
     const cut = shown.filter((line) => line.cut);
     return {
       lines: html`<svg class="overlay clip-lines" aria-hidden="true">${this.#dimmed(
@@ -101,6 +99,25 @@ export class PaneLines {
     };
   }
 
+  /** The planes with their lines in this picture. */
+  #shown(plan, scene) {
+    const { box } = this.#place();
+    const header = this.#view.painted.value;
+    return this.#lines(plan, scene).map((line) => {
+      const heights = heightsOver(line.plane, header.clip_from_lps_mm, this.#slice(scene).origin, box);
+      const cut = lineOf(heights, box, this.#along.get(line.id));
+      if (cut) this.#along.set(line.id, cut.along);
+      return {
+        ...line,
+        heights,
+        cut,
+        at: cut && onLine(cut, line.part),
+        turnAt: cut && line.turnedTo && onLine(cut, turnPart),
+        isChosen: this.#isChosen(line),
+      };
+    });
+  }
+
   /** @returns {Line[]} */
   #lines(plan, scene) {
     const clips = enabledClips(plan, scene).map(({ id, origin, normal }) => {
@@ -109,7 +126,6 @@ export class PaneLines {
         kind: 'clip',
         id,
         name: clipName(id),
-        words: [clipRow(id).name, keepsWords(id)].filter(Boolean).join(', '),
         label: keepsWords(id)
           ? say.clipHandle({ plane: clipWords(id), keeps: keepsWords(id) })
           : say.clipHandleAny({ plane: clipWords(id) }),
@@ -189,6 +205,7 @@ export class PaneLines {
       ...cut.flatMap(({ at, turnAt }) => [handleBox(at), ...(turnAt ? [handleBox(turnAt)] : [])]),
     ];
     return cut.map((line) => {
+      if (line.kind === 'clip') return nothing; // their words stand in the head
       const place = namePlace(line.cut, line.words, pane, taken);
       if (!place) return nothing;
       taken.push(place);

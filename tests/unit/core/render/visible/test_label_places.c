@@ -52,7 +52,8 @@ static void labels_lie_on_their_lines_in_the_picture_and_do_not_overlap(void **s
                 }
                 lines[ring] = (struct label_line){ (const double(*)[2])points[ring], POINTS, ring, 34 };
             }
-            int n = label_places_find(lines, RINGS, width, height, 14, squeeze == 2, places, 32, &err);
+            const struct label_style style = { .height_px = 14, .is_upright = squeeze == 2 };
+            int n = label_places_find(lines, RINGS, width, height, &style, places, 32, &err);
             assert_true(n >= 1 && n <= 32);
             for (int i = 0; i < n; i++) {
                 double nearest = INFINITY, turn = places[i].angle_deg * MATH_PI / 180;
@@ -95,10 +96,41 @@ static void overlapping_rectangles_are_told_from_others_as_their_pixels_say(void
     assert_true(n_over > 20 && n_over < 380);
 }
 
+static void places_to_choose_from_are_many_and_keep_off_what_is_kept_free(void **state)
+{
+    (void)state;
+    enum { POINTS = 181 };
+    static double ring[POINTS][2];
+    /* a bar across the upper half of the ring, as two ends */
+    static const double bar[2][2] = { { 0, 80 }, { 400, 80 } };
+    for (int i = 0; i < POINTS; i++) {
+        double turn = 2 * MATH_PI * (i % (POINTS - 1)) / (POINTS - 1);
+        ring[i][0] = 200 + 130 * cos(turn);
+        ring[i][1] = 200 + 130 * sin(turn);
+    }
+    const struct label_line lines[] = { { (const double(*)[2])ring, POINTS, 0, 34 }, { bar, 2, LABEL_KEPT_FREE, 0 } };
+    struct error err = { 0 };
+    int n_of[2];
+    for (int is_choice = 0; is_choice < 2; is_choice++) {
+        struct label_place places[32];
+        const struct label_style style = { .height_px = 14, .is_choice = is_choice };
+        n_of[is_choice] = label_places_find(lines, 2, 400, 400, &style, places, 32, &err);
+        for (int i = 0; i < n_of[is_choice]; i++) {
+            assert_int_equal(places[i].line, 0);
+            for (double x = 0; x <= 400; x += 0.5)
+                assert_false(holds(&places[i], x, 80));
+        }
+    }
+    /* the ring is 817 px long: one label each 480 px; places do not overlap, 34 + 3 px wide, and the bar takes some */
+    assert_int_equal(n_of[0], 1);
+    assert_in_range(n_of[1], 5, 22);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(labels_lie_on_their_lines_in_the_picture_and_do_not_overlap),
+        cmocka_unit_test(places_to_choose_from_are_many_and_keep_off_what_is_kept_free),
         cmocka_unit_test(overlapping_rectangles_are_told_from_others_as_their_pixels_say),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
