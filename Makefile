@@ -286,7 +286,7 @@ test:
 	@deploy/packages build run test
 	@tests/all.sh test
 test-deep:
-	@deploy/packages build run test
+	@deploy/packages build run test firefox
 	@tests/all.sh deep
 test-deploy:
 	@deploy/packages build run test deploy
@@ -298,6 +298,14 @@ build/deploy/.stamp: tests/deploy/package.json tests/deploy/package-lock.json .n
 	$(Q)mkdir -p $(@D) && cp $^ $(@D) && (cd $(@D) && npm ci --loglevel=error </dev/null >/dev/null) && touch $@
 test-proxies: all demo build/deploy/.stamp
 	$(Q)TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh deploy $(sort $(wildcard tests/deploy/*.test.mjs))
+
+# What test-deep runs of the page in Debian's Firefox.
+.PHONY: test-firefox
+build/firefox/.stamp: tests/firefox/package.json tests/firefox/package-lock.json .npmrc
+	$(if $(Q),@echo "  NPM ci build/firefox")
+	$(Q)mkdir -p $(@D) && cp $^ $(@D) && (cd $(@D) && npm ci --loglevel=error </dev/null >/dev/null) && touch $@
+test-firefox: all demo build/firefox/.stamp
+	$(Q)tests/run_node.sh firefox $(sort $(wildcard tests/firefox/*.test.mjs))
 
 # ---- documents: to change X, look in Y; the pictures of the user's guide ----------------------------------------------------------
 .PHONY: where guide-pictures

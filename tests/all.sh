@@ -63,6 +63,7 @@ deep)
     suite render-thread "$jobs" SAN=thread test-render
     suite faults "$jobs" SAN=address,undefined FAULTS=whole test-faults
     suite long test-long LONG_TESTS=rest
+    suite firefox test-firefox
     FUZZ_SEED=1 suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-3}"
     ;;
 deploy)

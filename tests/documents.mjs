@@ -1,5 +1,5 @@
 // Holds the documents to the project: node tests/documents.mjs [FOLDER]
-//   THIRD-PARTY.md has a row for each package of deploy/packages, package.json and tests/deploy/package.json, and none for others; of npm's with the licence they state
+//   THIRD-PARTY.md has a row for each package of deploy/packages, package.json, tests/deploy/package.json and tests/firefox/package.json, and none for others; of npm's with the licence they state
 //   the version stands in the Makefile, and everywhere else as there
 //   README.md has at most 6,000 bytes and names the browsers of deploy/promised.mjs
 //   docs/admin.md names each setting of deploy/beamroomd.conf
@@ -41,19 +41,26 @@ function packageRows(text) {
 
 function thirdParty() {
   const rows = packageRows(read('THIRD-PARTY.md'));
-  const groups = [...read('deploy/packages').matchAll(/^(?:build|run|test|ci|bench|deploy)="([^"]*)"/gm)];
+  const groups = [...read('deploy/packages').matchAll(/^(?:build|run|test|ci|bench|deploy|firefox)="([^"]*)"/gm)];
   const debian = groups.flatMap(([, names]) => names.split(/\s+/).filter(Boolean)).map((entry) => entry.split(':').at(-1));
   const { dependencies = {}, devDependencies = {} } = json('package.json');
-  const npm = { ...dependencies, ...devDependencies, ...json('tests/deploy/package.json').devDependencies };
+  const npm = {
+    ...dependencies,
+    ...devDependencies,
+    ...json('tests/deploy/package.json').devDependencies,
+    ...json('tests/firefox/package.json').devDependencies,
+  };
   const needed = new Set([...debian, ...Object.keys(npm)]);
   const named = new Set(rows.map(({ name }) => name));
-  if (groups.length !== 6) faults.push(`deploy/packages:1: ${groups.length} of six groups could be read`);
+  if (groups.length !== 7) faults.push(`deploy/packages:1: ${groups.length} of seven groups could be read`);
   for (const name of needed) if (!named.has(name)) faults.push(`THIRD-PARTY.md:1: no row for ${name}`);
   for (const { name, line, cells } of rows) {
     if (!needed.has(name)) faults.push(`THIRD-PARTY.md:${line}: ${name} stands neither in deploy/packages nor in a package.json`);
     if (Object.hasOwn(dependencies, name) && !cells.includes(dependencies[name]))
       faults.push(`THIRD-PARTY.md:${line}: ${name} is version ${dependencies[name]}`);
-    const stated = ['', 'build/deploy'].map((top) => join(root, top, 'node_modules', name, 'package.json')).find(existsSync);
+    const stated = ['', 'build/deploy', 'build/firefox']
+      .map((top) => join(root, top, 'node_modules', name, 'package.json'))
+      .find(existsSync);
     if (!Object.hasOwn(npm, name) || !stated) continue;
     const { license } = JSON.parse(readFileSync(stated, 'utf8'));
     if (!cells.some((cell) => cell === license)) faults.push(`THIRD-PARTY.md:${line}: ${name} states the licence ${license}`);

@@ -67,7 +67,7 @@ planted_circle() {
 planted_documents() {
     local folder out fault status=0
     folder=$(mktemp -d)
-    cp --parents ./*.md Makefile package.json package-lock.json tests/deploy/package.json deploy/packages deploy/promised.mjs deploy/beamroomd.conf docs/threads.md docs/admin.md "$folder"
+    cp --parents ./*.md Makefile package.json package-lock.json tests/deploy/package.json tests/firefox/package.json deploy/packages deploy/promised.mjs deploy/beamroomd.conf docs/threads.md docs/admin.md "$folder"
     printf '\nSee `core/base/planted.c`, and [a page](planted.md).\n' >>"$folder/docs/threads.md"
     sed -i 's/^bench="/&planted-dev /' "$folder/deploy/packages"
     sed -i 's/"version": "[0-9.]*",/"version": "9.9.9",/' "$folder/package.json"
@@ -250,7 +250,7 @@ planted_comment() {
     echo "$out"
     return 1
 }
-no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json tests/deploy/package-lock.json; }
+no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json tests/deploy/package-lock.json tests/firefox/package-lock.json; }
 
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
