@@ -128,7 +128,7 @@ $(B)/obj/%.o: %.c | $(GEN_STAMP)
 	$(if $(Q),@echo "  CC $<")
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_$(subst /,_,$(basename $<))) -c $< -o $@
 
-$(B)/libcore.a: $(call obj,$(CORE_SRC) $(GEN)/scene.c $(GEN)/sentences_gen.c $(GEN)/volume_presets.c $(GEN)/dose_presets.c $(GEN)/gl_shaders.c)
+$(B)/libcore.a: $(call obj,$(CORE_SRC) $(GEN)/scene.c $(GEN)/sentences_gen.c $(GEN)/volume_presets.c $(GEN)/dose_presets.c $(GEN)/color_maps.c $(GEN)/gl_shaders.c)
 $(B)/libwire.a: $(call obj,$(WIRE_SRC) $(GEN_SRC))
 $(B)/libserver.a: $(call obj,$(SERVER_SRC))
 $(B)/lib%.a:

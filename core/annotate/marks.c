@@ -54,12 +54,32 @@ static struct annotation_label *add_label(const struct marks *marks, struct vec3
     return &marks->annotations->labels[marks->annotations->n_labels++];
 }
 
+/* The letters of the axes in the corner, which has no place in the patient. */
+static void add_corner(const struct marks *marks)
+{
+    const int *size_px = marks->snapshot->view.size_px;
+    struct axes_corner corner;
+    axes_in_corner(marks->camera, size_px[0], size_px[1], &corner);
+    for (int i = 0; i < AXES_N_ARMS; i++) {
+        struct annotation_label label = { .is_centred = true, .text = { "LPS"[i] } };
+        for (int side = 0; side < 2; side++)
+            label.at[side] = (corner.at[side] + corner.letter[i][side]) / size_px[side];
+        marks->annotations->labels[marks->annotations->n_labels++] = label;
+    }
+}
+
 static void add_axes(const struct marks *marks)
 {
     struct vec3 middle;
     struct axis_end ends[AXES_N_ENDS];
-    bool is_drawn = marks->snapshot->scene.axes.visible && !snapshot_is_pane(marks->snapshot);
-    if (!is_drawn || !axes_of_plan(marks->snapshot->plan, &middle, ends))
+    const struct scene *scene = &marks->snapshot->scene;
+    if (!scene->axes.visible || !scene->axes.letters || snapshot_is_pane(marks->snapshot))
+        return;
+    if (scene->axes.form == SCENE_AXES_FORM_CORNER) {
+        add_corner(marks);
+        return;
+    }
+    if (!axes_of_scene(marks->snapshot->plan, scene, &middle, ends))
         return;
     for (int i = 0; i < AXES_N_ENDS; i++) {
         struct annotation_label *label = add_label(marks, ends[i].at_lps_mm, true);

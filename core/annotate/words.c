@@ -116,18 +116,26 @@ static int window_digits(double width)
 
 void words_window(char text[WORDS_SIZE], const struct scene_window *window, const char *unit)
 {
-    char width[40], center[40];
+    char width[40], center[40], gamma[24] = "";
     int digits = window_digits(window->width);
     words_number(center, window->center, digits);
     words_number(width, window->width, digits);
-    (void)snprintf(text, WORDS_SIZE, "C %s  W %s%s%s", center, width, *unit ? " " : "", unit);
+    if (window->gamma != 1)
+        (void)snprintf(gamma, sizeof gamma, "  gamma %.3g", window->gamma);
+    (void)snprintf(text, WORDS_SIZE, "C %s  W %s%s%s%s", center, width, *unit ? " " : "", unit, gamma);
 }
 
 const char *words_color_map(enum scene_color_map map)
 {
     static const char *const words[] = { [SCENE_COLOR_MAP_GREY] = "",
                                          [SCENE_COLOR_MAP_HOT_IRON] = "in hot iron",
-                                         [SCENE_COLOR_MAP_RAINBOW] = "in rainbow colours" };
+                                         [SCENE_COLOR_MAP_RAINBOW] = "in rainbow colours",
+                                         [SCENE_COLOR_MAP_VIRIDIS] = "in viridis",
+                                         [SCENE_COLOR_MAP_MAGMA] = "in magma",
+                                         [SCENE_COLOR_MAP_INFERNO] = "in inferno",
+                                         [SCENE_COLOR_MAP_PLASMA] = "in plasma",
+                                         [SCENE_COLOR_MAP_CIVIDIS] = "in cividis",
+                                         [SCENE_COLOR_MAP_TURBO] = "in turbo" };
     return words[map];
 }
 

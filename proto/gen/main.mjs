@@ -11,6 +11,7 @@
 //   undo_words.js        what a step of undo is called, for the page
 //   volume_presets.h volume_presets.c volume_presets.js  transfer functions to begin with
 //   dose_presets.h dose_presets.c dose_presets.js  weights by kind of tissue, isoeffective parameters, isodose levels
+//   color_maps.h color_maps.c color_maps.js  tables of colour maps, and the stops of their gradients for the page
 //   reference.html       all of it for people
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -19,6 +20,7 @@ import { checkedDocuments, checkedMessages } from './check.mjs';
 import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
+import { checkedColorMaps, colorMapsHeader, colorMapsScript, colorMapsSource } from './color_maps.mjs';
 import { checkedDosePresets, dosePresetsHeader, dosePresetsScript, dosePresetsSource } from './dose_presets.mjs';
 import { answerSchemas } from './answers.mjs';
 import { openapi, openapiSource } from './openapi.mjs';
@@ -47,6 +49,7 @@ const rights = checkedRights(read('rights.json'), routes, messages);
 const api = openapi({ ...http, routes }, scene, answerSchemas(read('answers.json'), read('record.json'), scene, routes), messages, '1');
 const presets = checkedPresets(read('volume_presets.json'), scene);
 const dosePresets = checkedDosePresets(read('dose_presets.json'), scene);
+const colorMaps = checkedColorMaps(read('color_maps.json'), scene);
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
 const write = (name, text) => writeFileSync(join(out, name), text);
@@ -71,6 +74,9 @@ write('volume_presets.js', presetsScript(presets));
 write('dose_presets.h', dosePresetsHeader());
 write('dose_presets.c', dosePresetsSource(dosePresets));
 write('dose_presets.js', dosePresetsScript(dosePresets));
+write('color_maps.h', colorMapsHeader());
+write('color_maps.c', colorMapsSource(colorMaps));
+write('color_maps.js', colorMapsScript(colorMaps));
 write('wire.js', wireScript(scene, messages));
 write('undo_words.js', undoWordsScript(scene));
 write(

@@ -113,7 +113,8 @@ static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const str
     cJSON *shown = NULL;
     patch = render_show_patch(&arguments->show, scene, err);
     if (patch && !(shown = scene_document_patch(document, defaults, scene, patch, &problem)))
-        refuse_problem("--show, --slices, --volume, --window, --plane or --clip", &problem, err);
+        refuse_problem("--show, --slices, --volume, --window, --colors, --light, --ambient, --plane or --clip",
+                       &problem, err);
     cJSON_Delete(patch);
     cJSON_Delete(scene);
     if (!shown)

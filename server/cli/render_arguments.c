@@ -33,7 +33,12 @@ static void print_help(void)
         "                    sagittal-high, each at a position along S, P or L, or beam, across the beam at a distance from\n"
         "                    its entry, and what lies before; given again: one more plane\n"
         "  --no-caps         leaves cuts of --clip open, so that they show what is hollow\n"
-        "  --window C/W      the image's window: centre and width, in its unit\n"
+        "  --window C/W[/G]  the image's window: centre and width, in its unit; gamma, above 1 brighter\n"
+        "  --colors MAP      of the image: grey, viridis, cividis, inferno, magma, plasma, hot-iron, rainbow or turbo\n"
+        "  --light A,E[,I]   where light comes from in 3-D: A degrees to the right of the eye, E up, I times as strong;\n"
+        "                    patient:A,E from the front towards the patient's left, and towards superior\n"
+        "  --ambient N       light from all sides in 3-D, 0 to 1\n");
+    printf(
         "  --dose ID         the dose that is shown\n"
         "  --accept A=B      uses two parts though they do not fit, such as dose:plan=image:ct; the caption says so; given\n"
         "                    again: one more pair\n"
@@ -239,6 +244,9 @@ static const struct option_row rows[] = {
     WORD("volume", show.volume),
     WORD("plane", show.plane),
     WORD("window", show.window),
+    WORD("colors", show.colors),
+    WORD("light", show.light),
+    WORD("ambient", show.ambient),
     { "from", required_argument, 0, take_from },
     { "clip", required_argument, 0, take_clip },
     FLAG("no-caps", show.is_uncapped),

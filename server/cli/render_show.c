@@ -156,14 +156,49 @@ static bool add_clip(const char *text, bool is_capped, cJSON *patch, struct erro
 
 static bool add_window(const char *text, cJSON *patch, struct error *err)
 {
-    char word[RENDER_WORD_SIZE];
-    double center, width;
+    char words[3][RENDER_WORD_SIZE] = { "", "", "1" };
+    double center, width, gamma;
     const char *at = text;
-    if (!render_next_word(&at, '/', word) || !render_number(word, &center) || !render_number(at, &width))
-        return error_set(err, ERROR_RANGE, "--window '%s' is not of the form 40/400", text);
+    bool is_good = render_next_word(&at, '/', words[0]) && render_next_word(&at, '/', words[1]) &&
+                   (!*at || (render_next_word(&at, '/', words[2]) && !*at));
+    if (!is_good || !render_number(words[0], &center) || !render_number(words[1], &width) ||
+        !render_number(words[2], &gamma))
+        return error_set(err, ERROR_RANGE, "--window '%s' is not of the form 40/400, or 40/400/1.4 with a gamma", text);
     cJSON *window = render_member(render_member(patch, "image"), "window");
     cJSON_AddNumberToObject(window, "center", center);
     cJSON_AddNumberToObject(window, "width", width);
+    cJSON_AddNumberToObject(window, "gamma", gamma);
+    return true;
+}
+
+/* "A,E[,INTENSITY]", before it "patient:" */
+static bool add_light(const char *text, cJSON *patch, struct error *err)
+{
+    static const char of_patient[] = "patient:";
+    static const char *const names[] = { "azimuth_deg", "elevation_deg", "intensity" };
+    bool is_of_patient = strncmp(text, of_patient, sizeof of_patient - 1) == 0;
+    const char *at = text + (is_of_patient ? sizeof of_patient - 1 : 0);
+    cJSON *lights = render_member(patch, "lights");
+    cJSON_AddStringToObject(lights, "frame", is_of_patient ? "patient" : "viewer");
+    bool is_good = true;
+    int n = 0;
+    for (double number; is_good && *at && n < 3; n++) {
+        char word[RENDER_WORD_SIZE];
+        is_good = render_next_word(&at, ',', word) && render_number(word, &number);
+        if (is_good)
+            cJSON_AddNumberToObject(lights, names[n], number);
+    }
+    return (is_good && n >= 2 && !*at) ||
+           error_set(err, ERROR_RANGE,
+                     "--light '%s' is not of the form 31,35 or 31,35,1, perhaps with patient: before it", text);
+}
+
+static bool add_ambient(const char *text, cJSON *patch, struct error *err)
+{
+    double ambient;
+    if (!render_number(text, &ambient))
+        return error_set(err, ERROR_RANGE, "--ambient '%s' is not a number", text);
+    cJSON_AddNumberToObject(render_member(patch, "lights"), "ambient", ambient);
     return true;
 }
 
@@ -174,9 +209,13 @@ cJSON *render_show_patch(const struct render_show *show, const cJSON *scene, str
                    (!show->slices || add_slices(show->slices, patch, err)) &&
                    (!show->volume || add_volume(show->volume, scene, patch, err)) &&
                    (!show->window || add_window(show->window, patch, err)) &&
+                   (!show->light || add_light(show->light, patch, err)) &&
+                   (!show->ambient || add_ambient(show->ambient, patch, err)) &&
                    (!show->plane || add_plane(show->plane, scene, patch, err));
     for (int i = 0; is_good && i < show->n_clips; i++)
         is_good = add_clip(show->clips[i], !show->is_uncapped, patch, err);
+    if (is_good && show->colors)
+        cJSON_AddStringToObject(render_member(patch, "image"), "color_map", show->colors);
     if (is_good)
         return patch;
     cJSON_Delete(patch);

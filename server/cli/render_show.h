@@ -12,7 +12,10 @@ struct render_show {
     const char *regions;                      /* "ID[=OPACITY],...": these alone, else opaque; "none" */
     const char *slices;                       /* "KIND[=MM],...": these slices alone; "none" */
     const char *volume;                       /* "METHOD[=VALUE]" */
-    const char *window;                       /* "CENTRE/WIDTH" */
+    const char *window;                       /* "CENTRE/WIDTH[/GAMMA]" */
+    const char *colors;                       /* a word of color_map */
+    const char *light;                        /* "[patient:]AZIMUTH,ELEVATION[,INTENSITY]" */
+    const char *ambient;                      /* a number */
     const char *plane;                        /* "NORMAL[@POINT]", each X,Y,Z: the oblique plane RENDER_SHOW_PLANE */
     const char *clips[RENDER_SHOW_MAX_CLIPS]; /* "axial-high=MM" and its like */
     int n_clips;

@@ -64,7 +64,7 @@ struct scene dose_scene(const struct plan *plan)
     for (size_t i = 0; i < scene.n_regions; i++)
         scene.regions[i].value.visible = false;
     scene.dose.quantity = SCENE_DOSE_QUANTITY_TOTAL;
-    scene.image.window = (struct scene_window){ .center = 100, .width = 260 };
+    scene.image.window = (struct scene_window){ .center = 100, .width = 260, .gamma = 1 };
     return scene;
 }
 

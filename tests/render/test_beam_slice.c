@@ -133,7 +133,7 @@ static bool is_at_draft(const struct scene *scene, const struct camera *camera, 
 static void expect_image(struct plan *plan, struct scene scene, struct view view, struct plane plane, const char *what)
 {
     struct wash_places places = { .camera = camera_in(plan, &scene, view), .plane = plane };
-    scene.image.window = (struct scene_window){ .center = 100, .width = 240 };
+    scene.image.window = (struct scene_window){ .center = 100, .width = 240, .gamma = 1 };
     const struct scene same = scene; /* its numbers */
     struct image *image = shots_plain(plan, scene, view);
     size_t n = 0;
@@ -225,7 +225,7 @@ static void slice_and_clip_plane_slide_apart(void **state)
             scene.clip.beam.cap = is_beyond;
             struct wash_places places = { .camera = camera_in(plan, &scene, view),
                                           .plane = slice_plane(directions[d], is_beyond ? 8 : -2) };
-            scene.image.window = (struct scene_window){ .center = 100, .width = 240 };
+            scene.image.window = (struct scene_window){ .center = 100, .width = 240, .gamma = 1 };
             struct image *image = shots_plain(plan, scene, view);
             size_t n_image = 0, n_background = 0;
             for (int y = 0; y < SHOTS_HEIGHT; y++)

@@ -94,6 +94,35 @@ static void levels_have_the_colours_of_the_map(void **state)
     shots_forget(plan);
 }
 
+/* Entries 0, 128 and 255 of the published tables: of viridis, magma, inferno and plasma as D3 has them too, of turbo
+ * and cividis those of their authors. */
+static void levels_have_the_colours_of_the_published_tables(void **state)
+{
+    (void)state;
+    static const struct {
+        enum scene_color_map map;
+        uint8_t low[3], middle[3], high[3];
+    } published[] = { { SCENE_COLOR_MAP_VIRIDIS, { 68, 1, 84 }, { 33, 145, 140 }, { 253, 231, 37 } },
+                      { SCENE_COLOR_MAP_MAGMA, { 0, 0, 4 }, { 183, 55, 121 }, { 252, 253, 191 } },
+                      { SCENE_COLOR_MAP_INFERNO, { 0, 0, 4 }, { 188, 55, 84 }, { 252, 255, 164 } },
+                      { SCENE_COLOR_MAP_PLASMA, { 13, 8, 135 }, { 204, 71, 120 }, { 240, 249, 33 } },
+                      { SCENE_COLOR_MAP_CIVIDIS, { 0, 34, 78 }, { 125, 124, 120 }, { 254, 232, 56 } },
+                      { SCENE_COLOR_MAP_TURBO, { 48, 18, 59 }, { 164, 252, 60 }, { 122, 4, 3 } } };
+    struct grid grid = columns_grid();
+    struct plan *plan = image_plan(&grid, VOXEL_U8, level_of_column);
+    for (size_t i = 0; i < sizeof published / sizeof published[0]; i++) {
+        struct scene scene = byte_scene(plan);
+        scene.image.color_map = published[i].map;
+        struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_CORONAL, origin, PIXELS_PER_MM));
+        const uint8_t *low = published[i].low, *middle = published[i].middle, *high = published[i].high;
+        expect_rgb(pixel_at(image, -6, 0), low[0], low[1], low[2], 1);
+        expect_rgb(pixel_at(image, 0, 0), middle[0], middle[1], middle[2], 1); /* of value 128 */
+        expect_rgb(pixel_at(image, 6, 0), high[0], high[1], high[2], 1);
+        image_destroy(image);
+    }
+    shots_forget(plan);
+}
+
 /* Where low values are white the map begins at the high ones. */
 static void a_colour_map_follows_what_low_values_are(void **state)
 {
@@ -125,6 +154,63 @@ static double hundred_below_the_middle(struct vec3 p)
 static double twenty_with_a_gap(struct vec3 p)
 {
     return p.x > 4 ? (double)NAN : 20;
+}
+
+/* The colour at the column of a level, in a picture of the image `columns`. */
+static const uint8_t *pixel_of_column(const struct image *image, int i)
+{
+    return pixel_at(image, i - (N_LEVELS - 1) / 2.0, 0);
+}
+
+/* 255 (v / 255)^(1 / gamma), on slices and in space. The table of tones has 4096 entries: a step of the steepest part
+ * that is tested, 1 of 255 at a gamma of 2.2, is 2 of 255. */
+static void gamma_raises_greys_to_its_power(void **state)
+{
+    (void)state;
+    static const double gammas[] = { 0.5, 1.4, 2.2 };
+    struct grid grid = columns_grid();
+    struct plan *plan = image_plan(&grid, VOXEL_U8, level_of_column);
+    for (size_t g = 0; g < sizeof gammas / sizeof gammas[0]; g++)
+        for (int is_space = 0; is_space < 2; is_space++) {
+            struct scene scene = byte_scene(plan);
+            scene.image.window.gamma = gammas[g];
+            scene.image.slices.coronal.visible = is_space;
+            struct image *image =
+                shots_plain(plan, scene,
+                            is_space ? shots_view_from(origin, vec3(0, -1, 0), vec3(0, 0, 1), PIXELS_PER_MM)
+                                     : shots_view(SCENE_KIND_CORONAL, origin, PIXELS_PER_MM));
+            for (int i = 0; i < N_LEVELS; i++) {
+                double grey = 255 * pow(levels[i] / 255.0, 1 / gammas[g]);
+                expect_rgb(pixel_of_column(image, i), grey, grey, grey, 2);
+            }
+            image_destroy(image);
+        }
+    shots_forget(plan);
+}
+
+static void gamma_comes_before_colours_and_after_what_low_values_are(void **state)
+{
+    (void)state;
+    struct grid grid = columns_grid();
+    struct plan *plan = image_plan(&grid, VOXEL_U8, level_of_column);
+    struct scene scene = byte_scene(plan);
+    scene.image.window.gamma = 2;
+    scene.image.color_map = SCENE_COLOR_MAP_HOT_IRON;
+    struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_CORONAL, origin, PIXELS_PER_MM));
+    /* value 64: level 255 sqrt(64 / 255) = 127.7, so red 255, no green */
+    expect_rgb(pixel_of_column(image, 3), 255, 0, 0, 1.5);
+    /* value 191: level 220.7, so green 2 (220.7 - 128) = 185.4, blue 4 (220.7 - 192) = 114.8 */
+    expect_rgb(pixel_of_column(image, 8), 255, 185.4, 114.8, 3);
+    image_destroy(image);
+    scene = byte_scene(plan);
+    scene.image.window.gamma = 2;
+    scene.image.low_values = SCENE_LOW_VALUES_WHITE;
+    image = shots_plain(plan, scene, shots_view(SCENE_KIND_CORONAL, origin, PIXELS_PER_MM));
+    /* value 191: 64 of 255 when low is white, and gamma makes it brighter: 127.7 */
+    expect_rgb(pixel_of_column(image, 8), 127.7, 127.7, 127.7, 1.5);
+    expect_rgb(pixel_of_column(image, 0), 255, 255, 255, 0.5);
+    image_destroy(image);
+    shots_forget(plan);
 }
 
 /* A second image of 10 x 10 x 10 mm, its grid turned by 45 degrees about P: on a coronal pane a square on its corner,
@@ -199,6 +285,27 @@ static void opacity_goes_from_one_image_to_the_other(void **state)
     shots_forget(plan);
 }
 
+/* The first image's 100 with gamma 2 is 255 sqrt(100 / 255) = 159.7; the second one's level 200 with gamma 0.5 is
+ * 255 (200 / 255)^2 = 156.9: hot iron (255, 57.7, 0). */
+static void each_of_two_images_has_its_own_gamma(void **state)
+{
+    (void)state;
+    struct plan *plan = blend_plan(hundred, twenty_with_a_gap);
+    for (int is_second = 0; is_second < 2; is_second++) {
+        struct scene scene = blend_scene(plan, is_second);
+        scene.image.window.gamma = 2;
+        scene.image.looks[0].value.window.gamma = 0.5;
+        struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, PIXELS_PER_MM));
+        if (is_second)
+            expect_rgb(pixel_at(image, -2, 1), 255, 57.7, 0, 2);
+        else
+            expect_rgb(pixel_at(image, -2, 1), 159.7, 159.7, 159.7, 1);
+        expect_rgb(pixel_at(image, -15, 1), 159.7, 159.7, 159.7, 1);
+        image_destroy(image);
+    }
+    shots_forget(plan);
+}
+
 static void without_a_look_the_second_image_has_its_own_first_window_in_grey(void **state)
 {
     (void)state;
@@ -265,6 +372,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_have_the_colours_of_the_map),
+        cmocka_unit_test(levels_have_the_colours_of_the_published_tables),
+        cmocka_unit_test(gamma_raises_greys_to_its_power),
+        cmocka_unit_test(gamma_comes_before_colours_and_after_what_low_values_are),
+        cmocka_unit_test(each_of_two_images_has_its_own_gamma),
         cmocka_unit_test(a_colour_map_follows_what_low_values_are),
         cmocka_unit_test(a_second_image_is_mixed_in_where_it_has_a_value),
         cmocka_unit_test(opacity_goes_from_one_image_to_the_other),

@@ -276,7 +276,7 @@ static void every_voxel_has_the_grey_its_window_says(void **state)
         made_plan_add_image(plan, &grid, cases[i].type, cases[i].value);
         struct scene scene = shots_scene(plan);
         scene.image.interpolation = SCENE_INTERPOLATION_NEAREST;
-        scene.image.window = (struct scene_window){ cases[i].center, cases[i].width };
+        scene.image.window = (struct scene_window){ cases[i].center, cases[i].width, 1 };
         struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 4));
         for (int voxel = 0; voxel < 60; voxel++) {
             double x_mm = voxel - 29.5, value = cases[i].value(vec3(x_mm, 0, 0));
@@ -297,7 +297,7 @@ static void linear_interpolation_is_linear(void **state)
     struct plan *plan = made_plan(&grid, empty_label, ball, 0);
     made_plan_add_image(plan, &grid, VOXEL_F32, ramp);
     struct scene scene = shots_scene(plan);
-    scene.image.window = (struct scene_window){ 0, 300 };
+    scene.image.window = (struct scene_window){ 0, 300, 1 };
     struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 8));
     for (int x = 200 - 100; x < 200 + 100; x++)
         assert_close(shots_pixel(image, x, 150)[0], 127.5 + 255 * 10 * ((x + 0.5 - 200) / 8.0) / 300, 1.5);
@@ -313,7 +313,7 @@ static void a_slice_in_space_leaves_out_what_is_below_the_threshold(void **state
     made_plan_add_image(plan, &grid, VOXEL_I16, ramp); /* 10 a millimetre to the left */
     struct scene scene = shots_scene(plan);
     scene.image.slices.coronal.visible = true;
-    scene.image.window = (struct scene_window){ 0, 600 };
+    scene.image.window = (struct scene_window){ 0, 600, 1 };
     scene.image.cull_below = 50;
     struct image *image = shots_plain(plan, scene, shots_view_from(origin, from_front, up, 4));
     assert_memory_equal(shots_pixel(image, 200 + 4 * 4, 150), shots_background, 3); /* 40 */
@@ -321,7 +321,7 @@ static void a_slice_in_space_leaves_out_what_is_below_the_threshold(void **state
     image_destroy(image);
 
     scene = shots_scene(plan); /* the slice's own pane shows everything */
-    scene.image.window = (struct scene_window){ 0, 600 };
+    scene.image.window = (struct scene_window){ 0, 600, 1 };
     scene.image.cull_below = 50;
     image = shots_plain(plan, scene, shots_view(SCENE_KIND_CORONAL, origin, 4));
     assert_close(shots_pixel(image, 200 - 10 * 4, 150)[0], 255 * 200 / 600.0, 3);
@@ -341,7 +341,7 @@ static void what_is_not_a_number_is_not_drawn(void **state)
     struct plan *plan = made_plan(&grid, empty_label, ball, 0);
     made_plan_add_image(plan, &grid, VOXEL_F32, holed);
     struct scene scene = shots_scene(plan);
-    scene.image.window = (struct scene_window){ 0, 200 };
+    scene.image.window = (struct scene_window){ 0, 200, 1 };
     struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 4));
     assert_memory_equal(shots_pixel(image, 200, 150), shots_background, 3);
     assert_int_equal(shots_pixel(image, 200 + 40, 150)[0], 255);

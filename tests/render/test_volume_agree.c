@@ -46,6 +46,8 @@ static const struct scene_transfer_point soft_tissue[] = {
 struct look {
     enum scene_volume_method method;
     bool is_bone, is_shaded, is_nearest, is_perspective, is_clipped, has_regions, is_still;
+    double gamma;                    /* 0: 1 */
+    struct scene_light_style lights; /* of intensity 0: the usual ones */
 };
 
 static struct scene scene_of(const struct plan *plan, const struct look *look)
@@ -64,7 +66,10 @@ static struct scene scene_of(const struct plan *plan, const struct look *look)
     volume->interpolation = look->is_nearest ? SCENE_INTERPOLATION_NEAREST : SCENE_INTERPOLATION_LINEAR;
     if (look->method != SCENE_VOLUME_METHOD_RAY)
         volume->cull_below = look->method == SCENE_VOLUME_METHOD_SLICES ? -200 : -900;
-    scene.image.window = (struct scene_window){ .center = 100, .width = 1500 };
+    scene.image.window =
+        (struct scene_window){ .center = 100, .width = 1500, .gamma = look->gamma > 0 ? look->gamma : 1 };
+    if (look->lights.intensity > 0)
+        scene.lights = look->lights;
     if (look->is_clipped) {
         scene.clip.axial_high = (struct scene_clip_axis){ true, 9, true };
         scene.clip.sagittal_high = (struct scene_clip_axis){ true, 14, false };
@@ -175,6 +180,18 @@ static void slices_and_projections_agree(void **state)
                              VOXEL_I16, 5000);
 }
 
+static void other_lights_and_greys_agree(void **state)
+{
+    (void)state;
+    const struct scene_light_style low = { SCENE_LIGHT_FRAME_VIEWER, -70, -10, 1.6, 0.1 },
+                                   left = { SCENE_LIGHT_FRAME_PATIENT, 90, 20, 0.8, 0.4 };
+    expect_agreement(&(struct look){ .is_shaded = true, .lights = low, .has_regions = true }, VOXEL_I16, 5000);
+    expect_agreement(&(struct look){ .is_bone = true, .is_shaded = true, .lights = left, .is_perspective = true },
+                     VOXEL_I16, 5000);
+    expect_agreement(&(struct look){ .method = SCENE_VOLUME_METHOD_AVERAGE, .gamma = 1.8 }, VOXEL_I16, 5000);
+    expect_agreement(&(struct look){ .is_shaded = true, .is_clipped = true, .gamma = 0.6 }, VOXEL_I16, 4000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,6 +199,7 @@ int main(void)
         cmocka_unit_test(cuts_through_a_volume_agree),
         cmocka_unit_test(layers_and_opaque_surfaces_in_a_volume_agree),
         cmocka_unit_test(slices_and_projections_agree),
+        cmocka_unit_test(other_lights_and_greys_agree),
     };
     return shots_run("volume_agree", tests, sizeof tests / sizeof tests[0]);
 }

@@ -183,7 +183,7 @@ static void the_texture_of_an_image_multiplies_the_light(void **state)
         volume_unref(plan->images[0].volume);
         plan->images[0].volume = made_volume(&grid, i == 1 ? VOXEL_F32 : VOXEL_I16, image_value);
         struct scene scene = wash_scene(plan, false, 1), white;
-        scene.image.window = (struct scene_window){ 10000, 20000 };
+        scene.image.window = (struct scene_window){ 10000, 20000, 1 };
         for (size_t r = 0; r < scene.n_regions; r++)
             scene.regions[r].value.color_rgb = 0xffffff;
         show_as_univels(&scene, SCENE_TEXTURE_NONE, 1);

@@ -5,6 +5,7 @@
 #include "core/render/gl/target.h"
 #include "core/render/gl/upload.h"
 #include "core/render/visible/draw.h"
+#include "core/render/visible/lights.h"
 
 /* State for drawing one band of a picture. */
 struct gl_frame {
@@ -21,6 +22,7 @@ struct gl_frame {
     const struct plan *plan;
     const struct draw_list *list;
     const struct camera *camera;
+    struct visible_lights lights;
     double view_line_width;  /* snapshot_line_width: widths of lines and sizes of points are in its unit */
     int first_row, n_rows;   /* of the band's samples in the picture, and of the whole picture */
     float clip_from_lps[16]; /* from patient points to the clip space of the band, upside down */
@@ -48,9 +50,15 @@ NODISCARD bool gl_set_wash(const struct gl_frame *frame, const struct gl_program
 /* Sets the uniforms and textures of a shape's texture; the program is in use. */
 NODISCARD bool gl_set_texture(const struct gl_frame *frame, const struct gl_program *program, const struct draw *draw,
                               struct error *err);
-/* Sets the window of an image's texture. */
-void gl_set_grey(const struct gl *gl, GLint scale, GLint ends, const struct gl_grid *texels, double low, double width,
-                 bool is_low_white);
+/* The uniforms of an image's window. */
+struct gl_window {
+    GLint grey, ends, tone;
+};
+/* Sets them; of the image low, width, gamma and is_low_white count. */
+void gl_set_window(const struct gl *gl, struct gl_window at, const struct gl_grid *texels,
+                   const struct draw_image *image);
+/* Sets the lights of the program in use; eye space is the camera's. */
+void gl_set_lights(const struct gl_frame *frame, const struct gl_program *program);
 /* Binds a table of one or two rows of colours by level to the unit; NULL: greys. */
 void gl_bind_colors(const struct gl_frame *frame, int unit, const uint32_t *first, const uint32_t *second);
 /* Maps 0..1 over a grid's outer faces to patient points. */

@@ -380,6 +380,7 @@ struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct d
                                         .plan = scope->snapshot->plan,
                                         .list = list,
                                         .camera = scope->camera,
+                                        .lights = visible_lights(&scope->snapshot->scene.lights, scope->camera),
                                         .view_line_width = snapshot_line_width(scope->snapshot) };
     return picture;
 }

@@ -51,6 +51,13 @@ static const struct gl_program *program_of(const struct gl_programs *programs, c
     return is_flat ? &programs->faceted : &programs->smooth;
 }
 
+void gl_set_lights(const struct gl_frame *frame, const struct gl_program *program)
+{
+    const struct visible_lights *l = &frame->lights;
+    frame->gl->Uniform4f(program->key_light, l->key[0], l->key[1], l->key[2], l->key_light);
+    frame->gl->Uniform4f(program->lights, l->fill_light, l->gloss, l->ambient, l->ambient_translucent);
+}
+
 static const struct gl_program *use_program(const struct gl_frame *frame, const struct draw *draw)
 {
     const struct gl *gl = frame->gl;
@@ -70,6 +77,7 @@ static const struct gl_program *use_program(const struct gl_frame *frame, const 
     gl->Uniform4f(program->color, (float)(rgb >> 16 & 255) / 255.0f, (float)(rgb >> 8 & 255) / 255.0f,
                   (float)(rgb & 255) / 255.0f, 1);
     gl->Uniform1f(program->opacity, (float)draw->opacity);
+    gl_set_lights(frame, program);
     gl->Uniform1i(program->is_rim, draw->shape.look.is_rim);
     gl->Uniform1i(program->is_two_sided, draw->shape.look.is_two_sided);
     gl->Uniform1f(program->rounding, (float)draw->shape.look.rounding);

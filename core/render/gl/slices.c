@@ -39,11 +39,21 @@ static void place_matrix(const struct grid *to, const struct grid *from, float o
     }
 }
 
-void gl_set_grey(const struct gl *gl, GLint scale, GLint ends, const struct gl_grid *texels, double low, double width,
-                 bool is_low_white)
+void gl_set_window(const struct gl *gl, struct gl_window at, const struct gl_grid *texels,
+                   const struct draw_image *image)
 {
-    gl->Uniform2f(scale, (float)(texels->value_per_unit / width), (float)((texels->value_at_zero - low) / width));
-    gl->Uniform2f(ends, is_low_white ? 1 : 0, is_low_white ? 0 : 1);
+    const double width = image->width;
+    gl->Uniform2f(at.grey, (float)(texels->value_per_unit / width),
+                  (float)((texels->value_at_zero - image->low) / width));
+    gl->Uniform2f(at.ends, image->is_low_white ? 1 : 0, image->is_low_white ? 0 : 1);
+    gl->Uniform1f(at.tone, (float)(1 / image->gamma));
+}
+
+static struct draw_image window_of(const struct draw_blend *blend)
+{
+    return (struct draw_image){
+        .low = blend->low, .width = blend->width, .gamma = blend->gamma, .is_low_white = blend->is_low_white
+    };
 }
 
 static void fill_colors(const uint32_t *colors, uint8_t row[4 * COLOR_MAP_LEVELS])
@@ -86,7 +96,9 @@ static bool set_colors(const struct gl_frame *frame, const struct draw *draw, co
     float matrix[16];
     place_matrix(&frame->plan->images[blend->image].volume->grid, grid, matrix);
     gl->UniformMatrix4fv(program->second_from_at, 1, GL_FALSE, matrix);
-    gl_set_grey(gl, program->second_grey, program->second_ends, texels, blend->low, blend->width, blend->is_low_white);
+    const struct draw_image window = window_of(blend);
+    gl_set_window(gl, (struct gl_window){ program->second_grey, program->second_ends, program->second_tone }, texels,
+                  &window);
     gl->ActiveTexture(GL_TEXTURE2);
     gl->BindTexture(GL_TEXTURE_3D, texels->texture);
     return true;
@@ -109,7 +121,7 @@ bool gl_draw_bare_image(const struct gl_frame *frame, const struct draw *draw, s
         return false;
     gl->UseProgram(program->name);
     gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
-    gl_set_grey(gl, program->grey, program->ends, texels, image->low, image->width, image->is_low_white);
+    gl_set_window(gl, (struct gl_window){ program->grey, program->ends, program->tone }, texels, image);
     gl->Uniform1f(program->cull, (float)image->cull);
     gl->Uniform1i(program->source, 0);
     if (has_colors && !set_colors(frame, draw, grid, err))

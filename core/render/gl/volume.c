@@ -132,6 +132,8 @@ bool gl_set_volume(const struct gl_frame *frame, const struct gl_program *progra
     gl->Uniform1f(program->cull, (float)fmax(volume->cull, -(double)FLT_MAX));
     gl->Uniform2f(program->grey, (float)(1 / image->width), (float)(-image->low / image->width));
     gl->Uniform2f(program->ends, image->is_low_white ? 1 : 0, image->is_low_white ? 0 : 1);
+    gl->Uniform1f(program->tone, (float)(1 / image->gamma));
+    gl_set_lights(frame, program);
     const struct draw_wash *wash = volume->wash ? volume->wash : image->wash;
     if (wash && !gl_set_wash(frame, program, wash, &grid->lps_mm_from_ijk, err))
         return false;

@@ -148,7 +148,7 @@ static bool set_image(const struct gl_frame *frame, const struct gl_program *pro
     if (!texels || !affine_invert(&lps_from_faces, &faces_from_lps))
         return false;
     set_map(gl, program->source_from_lps, &faces_from_lps);
-    gl_set_grey(gl, program->grey, program->ends, texels, image->low, image->width, image->is_low_white);
+    gl_set_window(gl, (struct gl_window){ program->grey, program->ends, program->tone }, texels, image);
     gl->Uniform1i(program->is_linear, image->is_linear);
     gl_bind_colors(frame, UNIT_COLORS, image->colors, NULL);
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_IMAGE);

@@ -43,6 +43,7 @@ static struct soft_lighting make_lighting(const struct soft_frame *frame, const 
     for (int c = 0; c < 3; c++)
         l.color[c] = (float)(draw->color_rgb >> (16 - 8 * c) & 255) / 255.0f;
     l.opacity = (float)draw->opacity;
+    l.lights = visible_lights(&frame->scope->snapshot->scene.lights, frame->scope->camera);
     l.is_rim = draw->shape.look.is_rim;
     l.is_two_sided = draw->shape.look.is_two_sided;
     if (draw->shape.texture.kind == SCENE_TEXTURE_IMAGE)
@@ -124,9 +125,10 @@ static struct soft_item make_item(const struct soft_frame *frame, const struct d
     };
 }
 
-/* The plane through one of the plan's images, with the window low..low + width; everything drawn, in grey. */
+/* The plane through one of the plan's images, with the window low..low + width; everything drawn, in grey or in tones
+ * (draw_image; NULL: none). */
 static struct soft_plane make_grey(const struct soft_frame *frame, const struct draw *draw, size_t image, double low,
-                                   double width, bool is_low_white, bool is_linear)
+                                   double width, bool is_low_white, bool is_linear, const uint32_t *tones)
 {
     static const enum soft_voxel types[] = {
         [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32
@@ -138,7 +140,10 @@ static struct soft_plane make_grey(const struct soft_frame *frame, const struct 
     plane.texture.type = types[volume->type];
     plane.texture.grey_scale = (float)(volume->slope / width);
     plane.texture.grey_offset = (float)((volume->offset - low) / width);
-    plane.texture.flip = is_low_white ? 255 : 0;
+    const int top = tones ? DRAW_TONES - 1 : 255;
+    plane.texture.top = (float)top;
+    plane.texture.flip = is_low_white ? (uint32_t)top : 0;
+    plane.texture.colors = tones;
     plane.texture.is_linear = is_linear;
     return plane;
 }
@@ -148,17 +153,19 @@ static struct soft_plane make_image(const struct soft_frame *frame, const struct
                                     const struct draw_image *image)
 {
     const struct draw_blend *blend = &image->blend;
-    struct soft_plane plane =
-        make_grey(frame, draw, draw->subject.index, image->low, image->width, image->is_low_white, image->is_linear);
+    struct soft_plane plane = make_grey(frame, draw, draw->subject.index, image->low, image->width, image->is_low_white,
+                                        image->is_linear, image->tones);
     plane.texture.cull = (float)image->cull;
-    plane.texture.colors = image->colors;
+    if (!image->tones)
+        plane.texture.colors = image->colors;
     for (int c = 0; c < 3; c++)
         plane.texture.darkest[c] = visible_background[c];
     plane.texture.has_depth = draw->depth == DRAW_DEPTH_TESTED;
     if (blend->part > 0) {
-        struct soft_plane second =
-            make_grey(frame, draw, blend->image, blend->low, blend->width, blend->is_low_white, image->is_linear);
-        second.texture.colors = blend->colors;
+        struct soft_plane second = make_grey(frame, draw, blend->image, blend->low, blend->width, blend->is_low_white,
+                                             image->is_linear, blend->tones);
+        if (!blend->tones)
+            second.texture.colors = blend->colors;
         soft_plane_blend(&plane, &second, blend->part);
     }
     return plane;

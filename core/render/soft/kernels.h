@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/render/visible/lights.h"
+
 /* Sub-samples along a side of a sample. Vertices are rounded to them; coverage is computed exactly from there on. */
 enum { SOFT_SUB_BITS = 8, SOFT_SUB = 1 << SOFT_SUB_BITS };
 /* Triangles with a vertex farther from the picture's corner than this are clipped; in sub-samples (32768 samples). */
@@ -31,6 +33,7 @@ struct soft_lighting {
     float viewer[4]; /* perspective: the eye and 1; parallel: the direction towards the viewer and 0 */
     float right[3], up[3], towards[3]; /* axes of eye space, in patient space */
     float color[3], opacity;
+    struct visible_lights lights;
     bool is_rim, is_two_sided;
     uint32_t mark; /* flips bits of the shaded colour's alpha */
 };
@@ -93,10 +96,11 @@ struct soft_texture {
     uint32_t size[3];
     float grey_scale, grey_offset,
         cull;                /* grey = value * scale + offset, 0 .. 1; not drawn where it is less than cull */
-    uint32_t flip;           /* 255: grey 0 is white, 1 is black; else 0 */
+    float top;               /* the highest level: 255, of a table of tones DRAW_TONES - 1 */
+    uint32_t flip;           /* as top: grey 0 is white, 1 is black; else 0 */
     uint32_t darkest[3];     /* red, green and blue of a grey are at least this */
     const uint32_t *palette; /* by label; NULL: grey */
-    const uint32_t *colors;  /* by level 0..255, as draw_image has them; NULL: grey */
+    const uint32_t *colors;  /* by level 0..top, as draw_image has them; NULL: grey, and top is 255 */
     bool is_linear, has_depth;
     uint32_t alpha; /* of drawn samples, as a word; of labels the palette's */
 };

@@ -1,7 +1,7 @@
 #pragma once
-/* The light on a surface, the same as in core/render/gl/shaders/light.glsl: a key light from the upper right, a weak
- * fill light from the left, a soft rim; translucency as in proto/scene.json. Has no branches, so that compilers
- * vectorise it. */
+/* The light on a surface, the same as in core/render/gl/shaders/light.glsl: a key light, a weak fill light from the
+ * left, both of the scene (core/render/visible/lights.h), a soft rim; translucency as in proto/scene.json. Has no
+ * branches, so that compilers vectorise it. */
 #include <math.h>
 
 #include "core/render/soft/kernels.h"
@@ -23,13 +23,14 @@ __attribute__((always_inline)) static inline uint32_t light_at(const struct soft
     const float ex = side * (s->right[0] * nx + s->right[1] * ny + s->right[2] * nz),
                 ey = side * (s->up[0] * nx + s->up[1] * ny + s->up[2] * nz),
                 ez = side * (s->towards[0] * nx + s->towards[1] * ny + s->towards[2] * nz);
-    const float key_cosine = 0.426f * ex + 0.568f * ey + 0.704f * ez,
+    const struct visible_lights *lights = &s->lights;
+    const float key_cosine = lights->key[0] * ex + lights->key[1] * ey + lights->key[2] * ez,
                 fill_cosine = -0.741f * ex + 0.106f * ey + 0.663f * ez;
     const float key = LIGHT_CLAMP(key_cosine), fill = LIGHT_CLAMP(fill_cosine);
-    const float key_2 = key * key, key_4 = key_2 * key_2, key_8 = key_4 * key_4, gloss = 0.07f * (key_8 * key_8);
-    const float ambient =
-        s->opacity < 1.0f ? 0.5f : 0.3f; /* translucent surfaces over black need more light to be seen */
-    const float lit = ambient + 0.58f * key + 0.18f * fill + 0.24f * (edge * edge);
+    const float key_2 = key * key, key_4 = key_2 * key_2, key_8 = key_4 * key_4,
+                gloss = lights->gloss * (key_8 * key_8);
+    const float ambient = s->opacity < 1.0f ? lights->ambient_translucent : lights->ambient;
+    const float lit = ambient + lights->key_light * key + lights->fill_light * fill + 0.24f * (edge * edge);
     const float root = sqrtf(edge), rim = s->is_rim ? 1.82f * s->opacity : 0.0f,
                 flat = s->is_rim ? 0.3f * s->opacity : s->opacity;
     const float alpha = flat + rim * LIGHT_RIM(root);

@@ -134,6 +134,14 @@ void soft_volume_per_pixel(const struct soft_volume *volume, struct soft_volume 
 
 /* ---- values ------------------------------------------------------------------------------------------------------- */
 
+static void set_colors(struct soft_volume *volume, const struct draw_image *image)
+{
+    const int top = image->tones ? DRAW_TONES - 1 : 255;
+    volume->top = (float)top;
+    volume->flip = image->is_low_white ? (uint32_t)top : 0;
+    volume->colors = image->tones ? image->tones : image->colors;
+}
+
 /* t of a value, by how raw values become values. */
 static void set_values(struct soft_volume *volume, const struct volume *image, const struct draw_volume *draw)
 {
@@ -149,8 +157,7 @@ static void set_values(struct soft_volume *volume, const struct volume *image, c
     volume->cull = (float)((draw->cull - low) * per_value);
     volume->grey_scale = (float)(1 / (per_value * draw->image.width));
     volume->grey_offset = (float)((low - draw->image.low) / draw->image.width);
-    volume->flip = draw->image.is_low_white ? 255 : 0;
-    volume->colors = draw->image.colors;
+    set_colors(volume, &draw->image);
     for (int c = 0; c < 3; c++)
         volume->darkest[c] = visible_background[c];
     if (draw->method != SCENE_VOLUME_METHOD_RAY)
@@ -170,9 +177,8 @@ void soft_volume_init_image(struct soft_volume *volume, const struct volume *ima
                                     .is_linear = look->is_linear,
                                     .scale = (float)(image->slope / look->width),
                                     .offset = (float)((image->offset - look->low) / look->width),
-                                    .grey_scale = 1,
-                                    .flip = look->is_low_white ? 255 : 0,
-                                    .colors = look->colors };
+                                    .grey_scale = 1 };
+    set_colors(volume, look);
     for (int axis = 0; axis < 3; axis++)
         volume->size[axis] = image->grid.size[axis];
 }
@@ -233,6 +239,7 @@ bool soft_volume_init(struct soft_volume *volume, const struct draw *draw, const
                                     .step_limit_mm = (float)draw->volume.step_limit_mm,
                                     .is_linear = draw->volume.is_linear,
                                     .is_shaded = draw->volume.is_shaded,
+                                    .lights = visible_lights(&snapshot->scene.lights, scope->camera),
                                     .samples = samples };
     for (int axis = 0; axis < 3; axis++)
         volume->size[axis] = image->grid.size[axis];

@@ -49,10 +49,12 @@ struct soft_volume {
     uint32_t color[DRAW_VOLUME_TABLE];
     float to_eye[3][3]; /* from the change of t with an index to its gradient along right, up, towards the viewer */
     float gradient;     /* that is lit half */
+    struct visible_lights lights;
     /* colours of values: grey = t grey_scale + grey_offset */
     float grey_scale, grey_offset;
+    float top; /* the highest level */
     uint32_t flip, darkest[3];
-    const uint32_t *colors;                   /* by level 0..255; NULL: grey */
+    const uint32_t *colors;                   /* by level 0..top; NULL: grey, and top is 255 */
     const struct soft_wash *wash, *face_wash; /* of samples, of cut faces; NULL: none. The caller fills them */
 };
 

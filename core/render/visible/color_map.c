@@ -1,7 +1,9 @@
-/* The tables of the colour maps, which the compiler makes of their formulas. */
+/* The tables of the colour maps: some the compiler makes of their formulas, the others are published ones. */
 #include "core/render/visible/color_map.h"
 
 #include <stddef.h>
+
+#include "color_maps.h" /* generated from proto/color_maps.json */
 
 #define BYTE(x) ((x) < 0 ? 0 : (x) > 255 ? 255 : (x))
 #define RGB(r, g, b) ((uint32_t)BYTE(r) | (uint32_t)BYTE(g) << 8 | (uint32_t)BYTE(b) << 16 | 0xff000000u)
@@ -24,7 +26,6 @@ const uint32_t *color_map_table(enum scene_color_map map)
     switch (map) {
     case SCENE_COLOR_MAP_HOT_IRON: return hot_iron;
     case SCENE_COLOR_MAP_RAINBOW: return rainbow;
-    case SCENE_COLOR_MAP_GREY: break;
+    default: return color_map_colors(map);
     }
-    return NULL;
 }

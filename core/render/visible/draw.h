@@ -69,8 +69,12 @@ struct draw_blend {
     double low, width;      /* as in draw_image */
     bool is_low_white;      /* as in draw_image */
     const uint32_t *colors; /* as in draw_image */
+    double gamma;           /* as in draw_image */
+    const uint32_t *tones;  /* as in draw_image */
 };
 
+/* Greys of a table of tones: at a gamma of 5 the darkest two are still less than 50 of 255 apart. */
+enum { DRAW_TONES = 4096 };
 /* Grey = (value - low) / width; drawn where it is cull or more. */
 struct draw_image {
     double low, width;      /* in the image's unit */
@@ -78,6 +82,8 @@ struct draw_image {
     bool is_low_white;      /* grey 0 is white, 1 is black */
     bool is_linear;         /* interpolated between voxels */
     const uint32_t *colors; /* by level 0..255 of what is_low_white leaves (color_map.h); NULL: grey */
+    double gamma;           /* the level is that grey to the power 1 / gamma; > 0 */
+    const uint32_t *tones;  /* [DRAW_TONES] colours by grey, gamma and colours applied; the list's; NULL: gamma is 1 */
     struct draw_blend blend;
     const struct draw_wash *wash; /* over the finished colour; the list's; NULL: none */
 };
@@ -286,6 +292,7 @@ struct draw_list {
     bool is_coarse;                      /* some shape is of reduced detail */
     uint8_t *palettes;                   /* of DRAW_LABELS */
     float (*transfer)[4];                /* of DRAW_VOLUME */
+    uint32_t *tones[2];                  /* of the image shown and the one blended over it; NULL: gamma is 1 */
     struct draw_cap_region *cap_regions; /* of DRAW_CAP */
     size_t n_cap_regions;
     /* [height_px][width_px] of the picture, filled by the back end for occlusion.h: at the first sample of each pixel;

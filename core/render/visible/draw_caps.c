@@ -60,7 +60,7 @@ static bool add_cap(struct draw_list *list, const struct draw_scope *scope, size
     if (style->regions)
         cap.tint = cap.has_image ? region_tint : 1;
     if (snapshot->image >= 0)
-        cap.image = draw_image_shown(snapshot, false);
+        cap.image = draw_image_shown(list, snapshot, false);
     cap.image.wash = draw_wash_shown(list, snapshot);
     if (cap.n_regions == 0)
         return true;

@@ -13,6 +13,7 @@
 #include "core/render/visible/draw_overlay.h"
 #include "core/render/visible/draw_planes.h"
 #include "core/render/visible/draw_regions.h"
+#include "core/render/visible/draw_tones.h"
 #include "core/render/visible/draw_tracks.h"
 #include "core/render/visible/draw_volume.h"
 #include "core/render/visible/draw_wash.h"
@@ -29,9 +30,10 @@ static bool draw_translucent_regions(struct draw_list *list, const struct draw_s
     return snapshot_is_pane(scope->snapshot) || draw_regions(list, scope, false, err);
 }
 
-/* The functions that fill the list, in the order of drawing. */
+/* The functions that fill the list, in the order of drawing; before them the tables that draws name. */
 typedef bool fill(struct draw_list *list, const struct draw_scope *scope, struct error *err);
 static fill *const fills[] = {
+    draw_tones,
     draw_opaque_regions,
     draw_opaque_isodoses,
     draw_opaque_beams,
@@ -103,6 +105,8 @@ void draw_list_destroy(struct draw_list *list)
     free(list->draws);
     free(list->palettes);
     free(list->depth);
+    free(list->tones[0]);
+    free(list->tones[1]);
     free(list->transfer);
     free(list);
 }

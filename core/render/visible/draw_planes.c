@@ -18,9 +18,9 @@ static void set_window(const struct scene_window *window, double *low, double *w
     *width = window->width;
 }
 
-static struct draw_blend blend_shown(const struct snapshot *snapshot)
+static struct draw_blend blend_shown(const struct draw_list *list, const struct snapshot *snapshot)
 {
-    struct draw_blend blend = { 0 };
+    struct draw_blend blend = { .gamma = 1 };
     if (snapshot->blend < 0)
         return blend;
     blend.image = (size_t)snapshot->blend;
@@ -29,17 +29,21 @@ static struct draw_blend blend_shown(const struct snapshot *snapshot)
     set_window(&look.window, &blend.low, &blend.width);
     blend.is_low_white = snapshot->plan->images[blend.image].is_inverted;
     blend.colors = color_map_table(look.color_map);
+    blend.gamma = look.window.gamma;
+    blend.tones = list->tones[1];
     return blend;
 }
 
-struct draw_image draw_image_shown(const struct snapshot *snapshot, bool is_culled)
+struct draw_image draw_image_shown(const struct draw_list *list, const struct snapshot *snapshot, bool is_culled)
 {
     const struct scene_image_style *style = &snapshot->scene.image;
     struct draw_image image = { .cull = -INFINITY,
                                 .is_low_white = snapshot_is_low_white(snapshot),
                                 .is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST,
                                 .colors = color_map_table(style->color_map),
-                                .blend = blend_shown(snapshot) };
+                                .gamma = style->window.gamma,
+                                .tones = list->tones[0],
+                                .blend = blend_shown(list, snapshot) };
     set_window(&style->window, &image.low, &image.width);
     if (is_culled)
         image.cull = (style->cull_below - image.low) / image.width;
@@ -53,7 +57,7 @@ static bool add_image(struct draw_list *list, const struct snapshot *snapshot, c
     struct clip_set clip = draw_clip_set(snapshot, snapshot->scene.image.clipped);
     if (draw_clip_cuts(&clip) && !draw_clip_slice(&clip, plane, &snapshot->plan->images[snapshot->image].volume->grid))
         return true;
-    struct draw_image image = draw_image_shown(snapshot, is_in_space);
+    struct draw_image image = draw_image_shown(list, snapshot, is_in_space);
     image.wash = draw_wash_shown(list, snapshot);
     return draw_list_add(list,
                          &(struct draw){

@@ -4,7 +4,7 @@
 
 /* The image shown with the scene's window, colours and blended image; the snapshot has one. is_culled: values below the
  * scene's cull_below are not drawn. */
-struct draw_image draw_image_shown(const struct snapshot *snapshot, bool is_culled);
+struct draw_image draw_image_shown(const struct draw_list *list, const struct snapshot *snapshot, bool is_culled);
 
 /* Appends the image's slices in space; on a slice pane the image, or without one the label layers: at each point
  * the colour of the uppermost visible region that holds it (visible_rank), whatever layers the regions are on.

@@ -152,7 +152,7 @@ static struct draw_texture texture_of(struct draw_list *list, const struct snaps
                          kind == REPRESENTATION_NURBS || kind == REPRESENTATION_FAN;
     if (texture.kind == SCENE_TEXTURE_IMAGE && snapshot->image >= 0) {
         texture.image_index = (size_t)snapshot->image;
-        texture.image = draw_image_shown(snapshot, false);
+        texture.image = draw_image_shown(list, snapshot, false);
     } else if (texture.kind == SCENE_TEXTURE_DOSE)
         texture.wash = draw_wash_of_region(list, snapshot, rank->region);
     if (!has_triangles || (texture.kind == SCENE_TEXTURE_IMAGE && snapshot->image < 0) ||

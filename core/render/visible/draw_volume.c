@@ -66,13 +66,13 @@ static bool has_opacity(const struct scene_volume_style *style)
 }
 
 /* Window and colours of the image shown; a second image is not blended over a volume. */
-static struct draw_image look_of_image(const struct snapshot *snapshot)
+static struct draw_image look_of_image(const struct draw_list *list, const struct snapshot *snapshot)
 {
     const struct scene_volume_style *style = &snapshot->scene.image.volume;
-    struct draw_image image = draw_image_shown(snapshot, false);
+    struct draw_image image = draw_image_shown(list, snapshot, false);
     image.cull = (style->cull_below - image.low) / image.width;
     image.is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST;
-    image.blend = (struct draw_blend){ 0 };
+    image.blend = (struct draw_blend){ .gamma = 1 };
     return image;
 }
 
@@ -89,7 +89,7 @@ bool draw_volume(struct draw_list *list, const struct draw_scope *scope, struct 
     struct draw_volume draw = {
         .method = style->method,
         .cull = style->cull_below,
-        .image = look_of_image(snapshot),
+        .image = look_of_image(list, snapshot),
         .n_slices = (int)style->steps,
         .is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST,
         .is_shaded = style->shaded,

@@ -7,11 +7,12 @@
 
 #include "core/base/mem.h"
 #include "core/derive/shape_slabs.h"
+#include "core/render/visible/axes_paint.h"
 #include "core/render/visible/beam_eye_marks.h"
 #include "core/render/visible/check.h"
 #include "core/render/visible/cut.h"
 #include "core/render/visible/paint.h"
-#include "core/scene/axes.h"
+#include "core/render/visible/space_pen.h"
 
 /* Limits of what is kept: the lines of three panes of all regions that a plan can have, and 96 MiB of lines and strokes
  * when a picture is done; while it is drawn, no strokes are added after the first 96 MiB of them. */
@@ -379,38 +380,22 @@ static bool paint_check(const struct target *target, const struct draw *draw, st
 
 /* ---- the dose's grid -------------------------------------------------------------------------------------------- */
 
-static double depth_mm(const struct camera *camera, const double p[3])
+static struct space_pen pen_of(const struct target *target)
 {
-    return vec3_dot(vec3_sub(vec3(p[0], p[1], p[2]), camera->eye_lps_mm), camera->forward);
-}
-
-/* Shortens an edge to its part in front of the eye; false: none of it is. A parallel 3-D view has no eye: there all is
- * in front. */
-static bool cut_before_eye(const struct target *target, double a[3], double b[3])
-{
-    const struct camera *camera = target->scope->camera;
-    double least = camera->is_parallel ? fmin(0, camera->near_mm) : fmax(1e-3, camera->near_mm / 10);
-    double wa = depth_mm(camera, a), wb = depth_mm(camera, b);
-    if ((camera->is_parallel && !snapshot_beam(target->scope->snapshot)) || (wa >= least && wb >= least))
-        return true;
-    if (wa < least && wb < least)
-        return false;
-    double t = (least - wa) / (wb - wa), *cut = wa < least ? a : b;
-    for (int i = 0; i < 3; i++)
-        cut[i] = a[i] + t * (b[i] - a[i]);
-    return true;
+    return (struct space_pen){ target->scope->snapshot, target->scope->camera,    target->paint,
+                               target->image->width_px, target->image->height_px, target->scale };
 }
 
 static void add_box(const struct target *target, const struct grid *grid, double width_px)
 {
+    const struct space_pen pen = pen_of(target);
     struct vec3 corners[8];
     cut_grid_corners(grid, corners);
     for (int corner = 0; corner < 8; corner++)
         for (int axis = 1; axis < 8; axis *= 2) {
             const struct vec3 *p = &corners[corner & ~axis], *q = &corners[corner | axis];
-            double a[3] = { p->x, p->y, p->z }, b[3] = { q->x, q->y, q->z };
-            if (!(corner & axis) && cut_before_eye(target, a, b))
-                paint_line(target->paint, project(target, a), project(target, b), width_px);
+            if (!(corner & axis))
+                space_pen_line(&pen, *p, *q, width_px);
         }
 }
 
@@ -437,43 +422,6 @@ static bool paint_dose_grid(const struct target *target, const struct draw *draw
     return is_good;
 }
 
-/* ---- the patient axes ------------------------------------------------------------------------------------------- */
-
-/* Part of an axis from its middle, 0 .. 1. */
-static void add_axis(const struct target *target, struct vec3 middle, struct vec3 end, double from, double to,
-                     double width_px)
-{
-    struct vec3 along = vec3_sub(end, middle), p = vec3_add(middle, vec3_scale(along, from)),
-                q = vec3_add(middle, vec3_scale(along, to));
-    double a[3] = { p.x, p.y, p.z }, b[3] = { q.x, q.y, q.z };
-    if (cut_before_eye(target, a, b))
-        paint_line(target->paint, project(target, a), project(target, b), width_px);
-}
-
-/* Lines over the picture are not hidden by what lies before them, so how strong they are says where they run: faint
- * inside the plan's box, plain where they stand out of it; and the half that points away from the viewer is weaker. */
-static void paint_axes(const struct target *target, const struct draw *draw)
-{
-    static const double faint = 0.3, plain = 0.95, away = 0.55;
-    const struct camera *camera = target->scope->camera;
-    const double in_box = 0.5 / AXES_REACH;
-    struct vec3 middle;
-    struct axis_end ends[AXES_N_ENDS];
-    if (!axes_of_plan(target->scope->snapshot->plan, &middle, ends))
-        return;
-    double width_px = fmax(1, draw->lines.width_px * target->scale), rim_px = width_px + 2 * halo_px * target->scale;
-    for (int i = 0; i < AXES_N_ENDS; i++) {
-        struct vec3 along = vec3_sub(ends[i].at_lps_mm, middle);
-        double strength = vec3_dot(along, camera->forward) > 0 ? away : 1;
-        add_axis(target, middle, ends[i].at_lps_mm, 0, in_box, width_px);
-        paint_flush(target->paint, draw->color_rgb, faint * strength);
-        add_axis(target, middle, ends[i].at_lps_mm, in_box, 1, rim_px);
-        paint_flush(target->paint, halo_rgb, plain * strength);
-        add_axis(target, middle, ends[i].at_lps_mm, in_box, 1, width_px);
-        paint_flush(target->paint, draw->color_rgb, plain * strength);
-    }
-}
-
 static void paint_beam_eye(const struct target *target)
 {
     struct beam_eye_marks marks;
@@ -490,7 +438,11 @@ static bool paint_draw(struct target *target, const struct draw *draw, struct er
     case DRAW_GRID_CUT:
     case DRAW_GRID_BOX: return paint_dose_grid(target, draw, err);
     case DRAW_STROKES: paint_strokes(target, draw); break;
-    case DRAW_AXES: paint_axes(target, draw); break;
+    case DRAW_AXES: {
+        const struct space_pen pen = pen_of(target);
+        axes_paint(&pen, draw->color_rgb, draw->lines.width_px);
+        break;
+    }
     case DRAW_BEAM_EYE: paint_beam_eye(target); break;
     case DRAW_SHAPE:
     case DRAW_IMAGE:

@@ -1,5 +1,6 @@
 // The menu of a 3-D pane's camera. Loaded when it is first opened.
 import { html, nothing } from '../../lib/lit-html.js';
+import { live } from '../../lib/directives/live.js';
 import { isTarget } from '../room/plan.js';
 import { isTurnable } from '../room/kinds.js';
 import { hasOwnRegions } from './orientation_menu.js';
@@ -43,9 +44,28 @@ export function menu({ room, ui }, actions, isDisabled) {
       isDisabled,
       (id, event) => cameras.setProjection(id, event.timeStamp),
     )}
-    <div class="checks">${scene?.axes ? checkbox(say.axes, scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), say.axesIs) : nothing}
+    <div class="checks">${scene?.axes ? axesChoice(scene.axes, isDisabled, (axes, event) => room.patchScene({ axes }, { view: actions.view.number, at: event.timeStamp })) : nothing}
       ${view.ofKind > 1 ? onlyTargets(room, view, isDisabled) : nothing}
       ${checkbox(sayAtOnce.linkCameras, ui.panes.areCamerasLinked.value, false, link, hasTwo ? sayAtOnce.linkCamerasIs : say.linkCamerasHow)}</div></div>`;
+}
+
+const axesForms = [
+  ['middle', say.axesMiddle],
+  ['crosshair', say.axesCrosshair],
+  ['box', say.axesBox],
+  ['corner', say.axesCorner],
+];
+
+/** The patient's axes: whether, where, with what. */
+function axesChoice({ visible, form, letters, ticks }, isDisabled, change) {
+  const set = (name) => (value, event) => change({ [name]: value }, event);
+  return html`${checkbox(say.axes, visible, isDisabled, set('visible'), say.axesIs)}${
+    visible
+      ? html`<select aria-label=${say.axesForm} ?disabled=${isDisabled} @change=${(event) => change({ form: event.target.value }, event)}>${axesForms.map(
+          ([id, name]) => html`<option value=${id} .selected=${live(id === form)}>${name}</option>`,
+        )}</select>${checkbox(say.axesLetters, letters, isDisabled, set('letters'))}${form === 'corner' ? nothing : checkbox(say.axesTicks, ticks, isDisabled, set('ticks'), say.axesTicksAre)}`
+      : nothing
+  }`;
 }
 
 /** A second 3-D picture beside the first: the same scene, without what lies around the targets. */

@@ -39,13 +39,31 @@ export function cubeSides(matrix) {
 }
 
 const reach = 0.6; // half the length of a patient axis, in sizes of the plan's box
+const corner = { aside: 0.13, up: 0.19, letter: 0.085 }; // in parts of the picture's shorter side
 
-/** Where the ends of the patient's axes through the middle of the plan are in a picture, 0 to 1; those behind the eye are left out. */
-export function axisEnds(matrix, { low, high }) {
+/**
+ * Where the letters of the patient's axes are in a picture, 0 to 1, as core/scene/axes.h has them; those behind the eye are left out.
+ * @param {{low: number[], high: number[]}} box of the plan @param {string} [form] a word of axes_form @param {number[]} [crosshair]
+ * @param {number[]} [size] of the picture, px
+ */
+export function axisEnds(matrix, { low, high }, form, crosshair, [width, height] = [1, 1]) {
+  if (form === 'corner') {
+    const { right, up } = pictureAxes(matrix);
+    const side = Math.min(width, height);
+    return ['L', 'P', 'S'].map((letter, axis) => ({
+      letter,
+      x: (side * (corner.aside + corner.letter * right[axis])) / width,
+      y: 1 - (side * (corner.up + corner.letter * up[axis])) / height,
+    }));
+  }
   const middle = scale(add(low, high), 0.5);
   return sides.flatMap(({ letter, out }) => {
     const axis = out.findIndex((part) => part !== 0);
-    const at = toPicture(matrix, add(middle, scale(out, reach * (high[axis] - low[axis]))));
+    const end = middle[axis] + out[axis] * reach * (high[axis] - low[axis]);
+    const at = toPicture(
+      matrix,
+      (form === 'crosshair' ? crosshair : middle).map((value, other) => (other === axis ? end : value)),
+    );
     return at ? [{ letter, x: at[0], y: at[1] }] : [];
   });
 }

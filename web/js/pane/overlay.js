@@ -20,7 +20,7 @@ const digitPx = 7; // widest character of a caption, on average
  * @param {number[]} what.pane size of the pane, CSS px
  * @param {number[]|null} what.point the crosshair, LPS mm
  * @param {boolean} [what.isOffPlane] the crosshair lies beside the plane of the pane
- * @param {{low: number[], high: number[]}|null} [what.axes] the plan's box, where its axes are drawn
+ * @param {{box: {low: number[], high: number[]}, form: string, crosshair: number[]}|null} [what.axes] the plan's box, where its axes have letters
  * @param {number} what.pxPerMm CSS px; 0 in perspective
  * @param {string} what.windowText
  */
@@ -31,7 +31,7 @@ export function overlay({ kind, header, box, pane: [width, height], point, isOff
   return svg`
     ${mark && (isInSpace(kind) ? marker(mark, box) : cross(mark, box, isOffPlane))}
     ${edgeText(edgeLetters(matrix), width, height)}
-    ${isInSpace(kind) && axes ? axesText(matrix, axes, box) : nothing}
+    ${isInSpace(kind) && axes ? axesText(matrix, axes, box, header.full_px) : nothing}
     ${pxPerMm > 0 && width >= scaleFrom ? scaleBar(pxPerMm, width, height) : nothing}
     ${!isInSpace(kind) && width >= windowFrom ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${fitting(windowText, width / 2 - letterHalf - 12)}</text>` : nothing}`;
 }
@@ -76,8 +76,8 @@ function edgeText(letters, width, height) {
 }
 
 /** At the ends of the patient's axes, where the box of the plan is not empty. */
-function axesText(matrix, bounds, box) {
-  return svg`<g class="axes">${axisEnds(matrix, bounds).map(
+function axesText(matrix, { box: bounds, form, crosshair }, box, size) {
+  return svg`<g class="axes">${axisEnds(matrix, bounds, form, crosshair, size).map(
     ({ letter, x, y }) => svg`<text class="halo letter" text-anchor="middle"
     x=${box.x + x * box.width} y=${box.y + y * box.height + 5}>${letter}</text>`,
   )}</g>`;

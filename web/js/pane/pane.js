@@ -225,7 +225,10 @@ export class Pane {
       box,
       pane,
       isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
-      axes: scene.axes?.visible ? plan?.bounds : null,
+      axes:
+        scene.axes?.visible && scene.axes.letters !== false && plan?.bounds
+          ? { box: plan.bounds, form: scene.axes.form, crosshair: crosshair(scene) }
+          : null,
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? say.noImage : '',

@@ -70,10 +70,10 @@ export const unitText = (unit) =>
 export const listed = (...words) => words.filter(Boolean).join(', ');
 
 /** "C 40  W 400 HU", the form of a window everywhere on the page; a narrow window has the digits that tell its greys apart. */
-export const windowText = ({ center, width }, unit, isInverted = false) => {
+export const windowText = ({ center, width, gamma = 1 }, unit, isInverted = false) => {
   const digits = width < 10 ? Math.min(2 - Math.floor(Math.log10(width)), 20) : 0;
   const [c, w] = width < 1e-4 ? [significant(center), significant(width)] : [number(center, digits), number(width, digits)];
-  const window = `C ${c}  W ${w}${unit ? ` ${unitText(unit)}` : ''}`;
+  const window = `C ${c}  W ${w}${unit ? ` ${unitText(unit)}` : ''}${gamma === 1 ? '' : ` γ ${Number(gamma.toFixed(2))}`}`;
   return isInverted ? say.windowInverted({ window }) : window;
 };
 

@@ -1,4 +1,4 @@
-// How an image is shown: window, colour map, presets by modality; showing another image; a second image blended over it. Pure.
+// How an image is shown: window, presets by modality; showing another image; a second image blended over it. Pure.
 import { shownImage } from './plan.js';
 import { say } from './words.js';
 
@@ -6,43 +6,6 @@ export const cullsNothing = -1e12; // proto/scene.json
 const narrowest = 1e-15;
 const farthest = 1e12; // of a window's centre
 
-/** Colour maps: word, name, what it is, the stops of its gradient (DICOM PS3.6 B.1.1 for hot iron). */
-export const colorMaps = [
-  [
-    'grey',
-    say.grey,
-    say.greyIs,
-    [
-      [0, '#000000'],
-      [1, '#ffffff'],
-    ],
-  ],
-  [
-    'hot-iron',
-    say.hotIron,
-    say.hotIronIs,
-    [
-      [0, '#000000'],
-      [0.5, '#ff0000'],
-      [0.75, '#ffff00'],
-      [1, '#ffffff'],
-    ],
-  ],
-  [
-    'rainbow',
-    say.rainbow,
-    say.rainbowIs,
-    [
-      [0, '#0000ff'],
-      [0.25, '#00ffff'],
-      [0.5, '#00ff00'],
-      [0.75, '#ffff00'],
-      [1, '#ff0000'],
-    ],
-  ],
-];
-
-export const isPet = ({ modality }) => modality === 'PET' || modality === 'PT';
 export const isCt = ({ unit }) => unit === 'HU';
 
 /** The window and the colour map of an image: the scene's for the one shown, what was kept for another one, else its own first window. */
@@ -52,10 +15,14 @@ export function lookOf(plan, scene, image) {
   return { window: kept?.window ?? image.window, color_map: kept?.color_map ?? 'grey' };
 }
 
+/** The window's third number: 1 where it is not stated. */
+export const gammaOf = ({ gamma = 1 }) => gamma;
+
 /** The patch that changes window or colour map of an image, shown or not. A look that is kept is written whole. */
 export function lookPatch(plan, scene, image, change) {
   if (image === shownImage(plan, scene)) return { image: change };
-  return { image: { looks: { [image.id]: { ...lookOf(plan, scene, image), ...change } } } };
+  const { window, color_map } = lookOf(plan, scene, image);
+  return { image: { looks: { [image.id]: { color_map, ...change, window: { ...window, ...change.window } } } } };
 }
 
 /** The threshold of slices in 3-D that a new room has for this image: core/scene/snapshot.c, scene_for_plan. */
@@ -72,6 +39,7 @@ export function showPatch(plan, scene, image) {
   const old = shownImage(plan, scene);
   const look = lookOf(plan, scene, image);
   const change = { id: image.id, low_values: 'own', ...look, looks: { [old.id]: lookOf(plan, scene, old) } };
+  if (gammaOf(look.window) !== gammaOf(scene.image.window)) change.window = { ...look.window, gamma: gammaOf(look.window) };
   if (scene.image.cull_below > cullsNothing) change.cull_below = usualCull(image, look.window);
   if (scene.image.blend?.id === image.id) change.blend = { id: '' };
   return { image: change };

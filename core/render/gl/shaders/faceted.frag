@@ -4,6 +4,7 @@
 #include "corners.glsl"
 #include "wash.glsl"
 #include "linear.glsl"
+#include "tone.glsl"
 #include "texture.glsl"
 #endif
 uniform mat3 eye_from_lps;

@@ -2,6 +2,7 @@
 #include "corners.glsl"
 #include "wash.glsl"
 #include "linear.glsl"
+#include "tone.glsl"
 #include "texture.glsl"
 in vec4 shade;
 in vec3 place;

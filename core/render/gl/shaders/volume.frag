@@ -1,6 +1,7 @@
 // A volume with the translucent layers: along the ray of a sample from front to back, as core/render/visible/draw.h describes
 // DRAW_VOLUME. Alpha of the result is the share of the picture below that still shows, for blending.
 #include "light.glsl"
+#include "tone.glsl"
 #if WASH
 #include "corners.glsl"
 #include "wash.glsl"
@@ -38,6 +39,7 @@ uniform int is_shaded;
 uniform float cull; // in the image's unit
 uniform vec2 grey;  // grey = value * x + y
 uniform vec2 ends;
+uniform float tone;
 out vec4 result;
 
 vec3 origin_ijk, step_ijk, towards; // of the ray: index = origin + t step, t in mm
@@ -58,7 +60,7 @@ float value_at(vec3 ijk) {
 }
 bool is_there(float value) { return value >= cull && !isinf(value); }
 vec3 image_color(float value) {
-    float level = mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0));
+    float level = toned(mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0)), tone);
     return texelFetch(table, ivec2(int(level * 255.0 + 0.5), 1), 0).rgb;
 }
 vec4 transfer(float value) {
@@ -74,7 +76,7 @@ vec3 lit(vec3 rgb, vec3 ijk) {
     vec3 n = g * inversesqrt(square);
     float facing = dot(n, towards), part = square / (square + march.w * march.w);
     if (facing < 0.0) { n = -n; facing = -facing; }
-    vec2 terms = light_terms(eye_from_lps * n, min(facing, 1.0), 0.3);
+    vec2 terms = light_terms(eye_from_lps * n, min(facing, 1.0), lights.z);
     return min(rgb * mix(FLAT, terms.x, part) + part * terms.y, 1.0);
 }
 

@@ -51,7 +51,7 @@ static void a_snapshot_is_described(void **state)
         struct scene scene;
         struct error err = { 0 };
         scene_for_plan(plan, &scene);
-        scene.image.window = (struct scene_window){ 40, 400 };
+        scene.image.window = (struct scene_window){ 40, 400, 1 };
         scene.image.slices.axial.position_mm = -4;
         scene.image.slices.axial.visible = false;
         scene.regions[1].value.opacity = 0.35;
@@ -254,11 +254,11 @@ static void a_window_stands_in_the_caption_as_on_the_page(void **state)
     static const struct {
         struct scene_window window;
         const char *words;
-    } cases[] = { { { 134.5, 269 }, "C 135  W 269 HU" },
-                  { { -134.5, 268.5 }, "C \u2212135  W 269 HU" },
-                  { { 1.45, 1000 }, "C 1  W 1000 HU" },
-                  { { 0.5, 2.125 }, "C 0.50  W 2.13 HU" },
-                  { { 0.0213, 0.045 }, "C 0.0213  W 0.0450 HU" } };
+    } cases[] = {
+        { { 134.5, 269, 1 }, "C 135  W 269 HU" },          { { -134.5, 268.5, 1 }, "C \u2212135  W 269 HU" },
+        { { 1.45, 1000, 1 }, "C 1  W 1000 HU" },           { { 0.5, 2.125, 1 }, "C 0.50  W 2.13 HU" },
+        { { 0.0213, 0.045, 1 }, "C 0.0213  W 0.0450 HU" }, { { 40, 400, 1.4 }, "C 40  W 400 HU  gamma 1.4" }
+    };
     struct plan *plan = made_plan_in_hu();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct scene scene;
@@ -300,7 +300,7 @@ static void an_oblique_pane_and_a_blended_image_are_described(void **state)
         for (int is_pane = 0; is_pane < 2; is_pane++) {
             scene_for_plan(plan, &scene);
             scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = false;
-            scene.image.window = (struct scene_window){ 40, 400 };
+            scene.image.window = (struct scene_window){ 40, 400, 1 };
             scene.image.slices.axial.position_mm = 3;
             scene.image.obliques = mem_new(sizeof *scene.image.obliques);
             scene.image.n_obliques = 1;
@@ -315,7 +315,7 @@ static void an_oblique_pane_and_a_blended_image_are_described(void **state)
             scene.image.color_map = SCENE_COLOR_MAP_RAINBOW;
             scene.image.looks = mem_new(sizeof *scene.image.looks);
             scene.image.n_looks = is_named ? 1 : 0;
-            scene.image.looks[0].value = (struct scene_image_look){ { 3, 6 }, SCENE_COLOR_MAP_HOT_IRON };
+            scene.image.looks[0].value = (struct scene_image_look){ { 3, 6, 1 }, SCENE_COLOR_MAP_HOT_IRON };
             (void)snprintf(scene.image.looks[0].id, sizeof scene.image.looks[0].id, "%s", plan->images[1].id);
             struct view view = view_default;
             view.kind = is_pane ? SCENE_KIND_OBLIQUE : SCENE_KIND_3D;
@@ -351,7 +351,7 @@ static void cuts_caps_and_the_volume_are_described(void **state)
         struct scene scene;
         struct error err = { 0 };
         scene_for_plan(plan, &scene);
-        scene.image.window = (struct scene_window){ 40, 400 };
+        scene.image.window = (struct scene_window){ 40, 400, 1 };
         scene.image.slices.axial.visible = false;
         scene.regions[1].value.clipped = false;
         scene.clip.axial_high = (struct scene_clip_axis){ true, 12, true };

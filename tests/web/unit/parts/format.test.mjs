@@ -19,6 +19,8 @@ test('a window is written centre first, with the unit of its image', () => {
   assert.match(windowText({ center: 40, width: 400 }, 'HU'), /^C 40\s+W 400 HU$/);
   assert.match(windowText({ center: 0.5, width: 1 }, ''), /^C 0\.50\s+W 1\.00$/);
   assert.match(windowText({ center: 0.0123, width: 0.004 }, 'Gy'), /^C 0\.01230\s+W 0\.00400 Gy$/);
+  assert.match(windowText({ center: 40, width: 400, gamma: 1 }, 'HU'), /^C 40\s+W 400 HU$/);
+  assert.match(windowText({ center: 40, width: 400, gamma: 1.4 }, 'HU'), /^C 40\s+W 400 HU γ 1\.4$/);
   assert.match(windowText({ center: 40, width: 400 }, 'HU', true), /^C 40\s+W 400 HU\s+low white$/);
 });
 

@@ -40,7 +40,7 @@ test('a document gets every default of proto/scene.json', () => {
     texture: 'none',
     clipped: true,
   });
-  assert.deepEqual(scene.image.window, { center: 40, width: 400 });
+  assert.deepEqual(scene.image.window, { center: 40, width: 400, gamma: 1 });
   assert.equal(readDocument('view', {}).camera.fov_deg, 30);
   assert.equal(readDocument('view', {}).camera.position_mm, null);
 });

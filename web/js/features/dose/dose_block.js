@@ -15,7 +15,7 @@ import {
 import { joinReason } from '../fits/fits.js';
 import { doseWords } from '../../room/plan.js';
 import { compareBlock, coverageBlock } from './dose_compare.js';
-import { levelBlock, tableSelect } from './dose_level.js';
+import { coloursSelect, levelBlock, tableSelect } from './dose_level.js';
 import { componentNames } from './dose_probe.js';
 import { referenceMore, referenceSelect, tissueSelect } from './dose_reference.js';
 import { quantitySelect } from './dose_rows.js';
@@ -42,7 +42,8 @@ export function doseBlock(world, isDisabled, change) {
       <dl class="dose-list"><dt>${say.quantity}</dt><dd>${quantitySelect(world, shown, { tabindex: 0 })}</dd>
         <dt>${say.hundredIs}</dt><dd>${referenceSelect(world, { tabindex: 0 })}</dd>${referenceMore(world, isDisabled, change)}
         <dt>${say.weights}</dt><dd>${tissueSelect(world, { tabindex: 0 })}</dd>
-        <dt>${say.levels}</dt><dd>${tableSelect(world, { tabindex: 0 })}</dd></dl></section>
+        <dt>${say.levels}</dt><dd>${tableSelect(world, { tabindex: 0 })}</dd>
+        <dt>${say.levelColours}</dt><dd>${coloursSelect(world, { tabindex: 0 })}</dd></dl></section>
     ${bloodBlock(world, shown, isDisabled, change)}
     ${isWeighted(quantity) ? weightsBlock(world, isDisabled, change) : nothing}
     ${quantity === 'isoeffective' ? isoeffectiveBlock(world, isDisabled, change) : nothing}

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
 import { convertedLevel, levelPatch, maxLevels } from './level_list.js';
+import { coloursNow, coloursPatch, levelColours } from './level_colors.js';
 import { levelTables, tableOf, tablePatch } from './dose_tables.js';
 import { addLevel, levelContext, levelParts, levelWords, otherText } from './dose_levels.js';
 import { checkbox, numberField, segment } from '../../parts/fields.js';
@@ -20,6 +21,21 @@ export function tableSelect({ room, ui }, { tabindex }) {
   return html`<select class="dose-select" aria-label=${say.table} title=${now ? say.levelsAre({ table: now.name, source: now.source }) : say.tables} tabindex=${tabindex} ?disabled=${!room.canChange.value} @change=${change}>
     <option value="" ?selected=${!now} .selected=${live(!now)} disabled>${say.presets}</option>
     ${levelTables.map(({ name, source }) => html`<option value=${name} title=${source} ?selected=${now?.name === name} .selected=${live(now?.name === name)}>${name}</option>`)}</select>`;
+}
+
+/** Colours of all levels. */
+export function coloursSelect({ room, ui, doses }, { tabindex }) {
+  const scene = room.scene.value;
+  const reference = doses.reference.value;
+  const now = coloursNow(scene, reference);
+  const n = Object.keys(scene.dose.levels).length;
+  const change = (event) => {
+    const patch = coloursPatch(scene, reference, event.target.value);
+    if (patch) room.patchScene(patch, how(ui, event));
+  };
+  return html`<select class="dose-select" aria-label=${say.levelColoursOf} title=${levelColours.find(([id]) => id === now)?.[2] ?? say.coloursAre} tabindex=${tabindex} ?disabled=${!room.canChange.value || !n} @change=${change}>
+    <option value="" .selected=${live(!now)} disabled>${say.coloursOwn}</option>
+    ${levelColours.map(([id, name, about, most]) => html`<option value=${id} title=${about} ?disabled=${n > most} .selected=${live(now === id)}>${n > most ? say.coloursTooMany({ name, n: most }) : name}</option>`)}</select>`;
 }
 
 /** A level in Selection: everything about it. */

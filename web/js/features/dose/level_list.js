@@ -1,4 +1,5 @@
 // Isodose levels of a scene: their order, their value in the other unit, adding, removing. Pure.
+import { dosePresets } from '../../../gen/dose_presets.js';
 
 export const maxLevels = 32;
 
@@ -15,6 +16,8 @@ export function levelsOf(scene, reference) {
     .sort((a, b) => rank(b) - rank(a));
 }
 
+/** The colours that are told apart with any colour vision. */
+const safe = dosePresets.levelTables.find(({ id }) => id === 'safe').levels.map(({ color }) => color);
 const colours = ['#ff5a36', '#ffb52e', '#ffd60a', '#6fd33a', '#22b4d6', '#3aa0ff', '#8b7cf6', '#e05bff'];
 
 function freeId(levels) {
@@ -30,7 +33,8 @@ export function addedLevel(scene, reference) {
   const last = all.at(-1);
   const id = freeId(scene.dose.levels);
   const value = last ? Number((last.value > 10 && last.unit === 'percent' ? last.value - 10 : last.value / 2).toPrecision(3)) : 50;
-  const color = colours.find((other) => !all.some((level) => level.color === other)) ?? colours[0];
+  const choice = all.length && all.every(({ color }) => safe.includes(color)) ? [...safe, ...colours] : colours;
+  const color = choice.find((other) => !all.some((level) => level.color === other)) ?? colours[0];
   return {
     id,
     patch: {

@@ -1,11 +1,18 @@
 // Images: window, colours, the second image over the first, the image as a volume; Selection of the 3-D picture.
 import { nothing } from '../../../lib/lit-html.js';
 import { isInSpace } from '../../room/kinds.js';
-import { later } from '../../parts/lazy.js';
+import { known, later } from '../../parts/lazy.js';
 import { Histograms } from './histograms.js';
 import { imageRows } from './image_rows.js';
-import { imageLegend } from './image_legend.js';
 import { say } from './words.js';
+
+const legend = later(() => import('./image_legend.js'));
+
+/** The legend of an image in colours, and of one blended over another; most plans show neither. */
+function legendOf(world, place) {
+  const { color_map, blend } = world.room.scene.value?.image ?? {};
+  return (color_map && color_map !== 'grey') || blend?.id ? (known(legend)?.imageLegend(world, place) ?? nothing) : nothing;
+}
 
 /** @type {import('../index.js').Feature} */
 export const image = {
@@ -18,5 +25,5 @@ export const image = {
   kinds: { view: '', image: 'images', volume: 'images' },
   blocks: later(() => import('./later_blocks.js'), 'js/features/image/image.css'),
   isSoon: true,
-  pane: (world, { kind, number }) => ({ legend: () => (isInSpace(kind) ? nothing : imageLegend(world, number)) }),
+  pane: (world, { kind, number }) => ({ legend: () => (isInSpace(kind) ? nothing : legendOf(world, number)) }),
 };

@@ -1,14 +1,22 @@
 // The colours of an image: the bar of its window, and the legend of slice panes.
 import { html, nothing, svg } from '../../../lib/lit-html.js';
-import { blendedImage, colorMaps, endsOf, lookOf } from '../../room/image_look.js';
+import { blendedImage, endsOf, gammaOf, lookOf } from '../../room/image_look.js';
 import { isLowWhite, shownImage } from '../../room/plan.js';
 import { significant, unitText } from '../../parts/format.js';
+import { colorAt, colorMaps } from './color_maps.js';
 import { say } from './words.js';
+
+/** Places a window's gamma moves colours to: a grey g is drawn in the colour at g to the power 1 / gamma. */
+const gammaPlaces = Array.from({ length: 17 }, (_, i) => i / 16);
+function stopsOf(chosen, gamma) {
+  const [id, , , stops] = colorMaps.find(([other]) => other === chosen) ?? colorMaps[0];
+  return gamma === 1 ? stops : gammaPlaces.map((at) => [at, colorAt(id, at ** (1 / gamma))]);
+}
 
 /** The colours of a window from its lower to its upper end. place: names the bar on the page. */
 export function colorBar({ room }, image, place = 'panel') {
   const { window, color_map: chosen } = lookOf(room.plan.value, room.scene.value, image);
-  const [, , , stops] = colorMaps.find(([id]) => id === chosen) ?? colorMaps[0];
+  const stops = stopsOf(chosen, gammaOf(window));
   const isTurned = image === shownImage(room.plan.value, room.scene.value) ? isLowWhite(image, room.scene.value) : image.isInverted;
   const { low, high } = endsOf(window);
   const id = `image-bar-${place}-${image.id}`;

@@ -1,23 +1,15 @@
 // Window and colour map of one image as fields and buttons, for the image shown and for one blended over it.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
-import {
-  colorMaps,
-  endsOf,
-  isCt,
-  isPet,
-  isSameWindow,
-  lookOf,
-  lookPatch,
-  roundedWindow,
-  windowFrom,
-  windowPresets,
-} from '../../room/image_look.js';
-import { numberField, segment } from '../../parts/fields.js';
+import { endsOf, gammaOf, isCt, isSameWindow, lookOf, lookPatch, roundedWindow, windowFrom, windowPresets } from '../../room/image_look.js';
+import { live } from '../../../lib/directives/live.js';
+import { numberField } from '../../parts/fields.js';
 import { significant, unitText } from '../../parts/format.js';
+import { colorMaps } from './color_maps.js';
 import { say } from './later_words.js';
 
-const narrowest = 1e-15;
+const narrowest = 1e-15; // proto/scene.json, also of gamma
+const [leastGamma, mostGamma] = [0.2, 5];
 
 /** Formats a value with as many figures as tell the greys of a window of this width apart. */
 const shown = (value, width) => Number(value.toFixed(Math.min(Math.max(1, 3 - Math.floor(Math.log10(width))), 20)));
@@ -30,6 +22,7 @@ const names = {
   centre: say.windowCentre,
   low: say.windowLow,
   width: say.windowWidth,
+  gamma: say.windowGamma,
   high: say.windowHigh,
   presets: say.windowPresets,
 };
@@ -38,6 +31,7 @@ const secondNames = {
   centre: say.secondCentre,
   low: say.secondLow,
   width: say.secondWidth,
+  gamma: say.secondGamma,
   high: say.secondHigh,
   presets: say.secondPresets,
 };
@@ -55,7 +49,8 @@ export function windowFields(world, image, isSecond, isDisabled, set) {
     html`<label class="image-field"><span>${words}</span>${numberField(label, shown(value, window.width), unitText(image.unit), isDisabled, (entered, event) => set(roundedWindow(change(entered)), event))}</label>`;
   return html`<div class="image-window" role="group" aria-label=${name.window}>
       ${field(say.centre, name.centre, window.center, (center) => ({ ...window, center }))}${field(say.low, name.low, low, (value) => windowFrom(value, high))}
-      ${field(say.width, name.width, window.width, (width) => ({ ...window, width: Math.max(width, narrowest) }))}${field(say.high, name.high, high, (value) => windowFrom(low, value))}</div>
+      ${field(say.width, name.width, window.width, (width) => ({ ...window, width: Math.max(width, narrowest) }))}${field(say.high, name.high, high, (value) => windowFrom(low, value))}
+      <label class="image-field" title=${say.gammaIs}><span>${say.gamma}</span>${numberField(name.gamma, Number(gammaOf(window).toPrecision(3)), '', isDisabled, (gamma, event) => set({ gamma: Math.min(Math.max(gamma, leastGamma), mostGamma) }, event))}</label></div>
     <div class="buttons looks" role="group" aria-label=${name.presets}>${windowPresets(image, histogramOf(world, image)).map((preset) => presetButton(preset, window, !isSecond, isDisabled, set))}</div>`;
 }
 
@@ -68,16 +63,13 @@ function presetButton(preset, window, hasKey, isDisabled, set) {
     @click=${(event) => set(roundedWindow(preset), event)}>${preset.name}${key ? html` <kbd>${key}</kbd>` : nothing}</button>`;
 }
 
-/** The choice of a colour map: for PET, and wherever one is chosen already. */
+/** The choice of a colour map. */
 export function colorMapRow(world, image, isSecond, isDisabled, change) {
   const { room } = world;
   const { color_map: chosen } = lookOf(room.plan.value, room.scene.value, image);
-  if (!isSecond && !isPet(image) && chosen === 'grey') return nothing;
-  return html`<dt>${say.colours}</dt><dd>${segment(
-    isSecond ? say.secondColours : say.colours,
-    colorMaps.map(([id, name, about]) => [id, name, about]),
-    chosen,
-    isDisabled,
-    (color_map, event) => change(lookPatch(room.plan.value, room.scene.value, image, { color_map }), event),
-  )}</dd>`;
+  const choose = (event) => change(lookPatch(room.plan.value, room.scene.value, image, { color_map: event.target.value }), event);
+  const [, , about] = colorMaps.find(([id]) => id === chosen) ?? [];
+  return html`<dt>${say.colours}</dt><dd><select aria-label=${isSecond ? say.secondColours : say.colours} title=${about ?? nothing} ?disabled=${isDisabled} @change=${choose}>${colorMaps.map(
+    ([id, name, is]) => html`<option value=${id} title=${is} .selected=${live(id === chosen)}>${name}</option>`,
+  )}</select></dd>`;
 }
