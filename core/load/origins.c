@@ -13,22 +13,24 @@ _Static_assert((int)DICOM_MAX_PATIENTS == (int)ORIGIN_MAX_PATIENTS, "every patie
 _Static_assert((int)FOLDER_NAME_SIZE == (int)sizeof((struct part_origin *)NULL)->path, "a path fits");
 _Static_assert((int)DICOM_UID_SIZE <= (int)ORIGIN_UID_SIZE, "a UID fits");
 
+void origin_patient(const struct dicom_patient *from, struct plan_patient *patient)
+{
+    _Static_assert(sizeof patient->id == sizeof from->id && sizeof patient->issuer == sizeof from->issuer &&
+                       sizeof patient->name == sizeof from->name && sizeof patient->sex == sizeof from->sex &&
+                       sizeof patient->birth_date == sizeof from->birth_date,
+                   "texts of a patient fit");
+    memcpy(patient->id, from->id, sizeof patient->id);
+    memcpy(patient->issuer, from->issuer, sizeof patient->issuer);
+    memcpy(patient->name, from->name, sizeof patient->name);
+    memcpy(patient->birth_date, from->birth_date, sizeof patient->birth_date);
+    memcpy(patient->sex, from->sex, sizeof patient->sex);
+    patient->has_conflict = from->has_conflict;
+}
+
 static void add_patients(struct plan *plan, const struct dicom_index *index)
 {
-    for (size_t i = 0; i < index->n_patients; i++) {
-        const struct dicom_patient *from = &index->patients[i];
-        struct plan_patient *patient = &plan->patients[plan->n_patients++];
-        _Static_assert(sizeof patient->id == sizeof from->id && sizeof patient->issuer == sizeof from->issuer &&
-                           sizeof patient->name == sizeof from->name && sizeof patient->sex == sizeof from->sex &&
-                           sizeof patient->birth_date == sizeof from->birth_date,
-                       "texts of a patient fit");
-        memcpy(patient->id, from->id, sizeof patient->id);
-        memcpy(patient->issuer, from->issuer, sizeof patient->issuer);
-        memcpy(patient->name, from->name, sizeof patient->name);
-        memcpy(patient->birth_date, from->birth_date, sizeof patient->birth_date);
-        memcpy(patient->sex, from->sex, sizeof patient->sex);
-        patient->has_conflict = from->has_conflict;
-    }
+    for (size_t i = 0; i < index->n_patients; i++)
+        origin_patient(&index->patients[i], &plan->patients[plan->n_patients++]);
 }
 
 static int patient_of(const struct loading *loading, const char *path)
@@ -45,6 +47,22 @@ static int treatment_plan_of(const struct plan *plan, const char *uid)
     return -1;
 }
 
+void origin_treatment_plan(const struct rtplan *from, int patient, struct treatment_plan *added)
+{
+    *added = (struct treatment_plan){ .n_fractions = from->n_fractions,
+                                      .prescription_gy = from->target_dose_gy,
+                                      .patient = patient };
+    snprintf(added->uid, sizeof added->uid, "%s", from->uid);
+    snprintf(added->structs_uid, sizeof added->structs_uid, "%s", from->struct_uid);
+    memcpy(added->label, from->label, sizeof added->label);
+    memcpy(added->name, from->name, sizeof added->name);
+    memcpy(added->date, from->date, sizeof added->date);
+    memcpy(added->time, from->time, sizeof added->time);
+    memcpy(added->approval, from->approval, sizeof added->approval);
+    memcpy(added->review_date, from->review_date, sizeof added->review_date);
+    memcpy(added->reviewer, from->reviewer, sizeof added->reviewer);
+}
+
 static void add_treatment_plan(struct loading *loading, const struct part_reading *reading)
 {
     struct plan *plan = loading->plan;
@@ -55,19 +73,7 @@ static void add_treatment_plan(struct loading *loading, const struct part_readin
                    ORIGIN_MAX_TREATMENT_PLANS);
         return;
     }
-    struct treatment_plan *added = &plan->treatment_plans[plan->n_treatment_plans++];
-    *added = (struct treatment_plan){ .n_fractions = from->n_fractions,
-                                      .prescription_gy = from->target_dose_gy,
-                                      .patient = patient_of(loading, reading->path) };
-    snprintf(added->uid, sizeof added->uid, "%s", from->uid);
-    snprintf(added->structs_uid, sizeof added->structs_uid, "%s", from->struct_uid);
-    memcpy(added->label, from->label, sizeof added->label);
-    memcpy(added->name, from->name, sizeof added->name);
-    memcpy(added->date, from->date, sizeof added->date);
-    memcpy(added->time, from->time, sizeof added->time);
-    memcpy(added->approval, from->approval, sizeof added->approval);
-    memcpy(added->review_date, from->review_date, sizeof added->review_date);
-    memcpy(added->reviewer, from->reviewer, sizeof added->reviewer);
+    origin_treatment_plan(from, patient_of(loading, reading->path), &plan->treatment_plans[plan->n_treatment_plans++]);
 }
 
 void origins_begin(struct loading *loading)

@@ -3,6 +3,13 @@
  * set (core/plan/origin.h). Judges nothing, but for what cannot be one part: see origin_join. */
 #include "core/load/loading.h"
 
+struct dicom_patient;
+struct rtplan;
+
+/* Copies what one file says into the form of a plan. patient: index in the plan's patients; -1: unknown. */
+void origin_patient(const struct dicom_patient *from, struct plan_patient *patient);
+void origin_treatment_plan(const struct rtplan *from, int patient, struct treatment_plan *added);
+
 /* Lists the patients of the DICOM files and the treatment plans that were read. Call it once, after reading. */
 void origins_begin(struct loading *loading);
 

@@ -4,11 +4,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/plan/plan_json.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/find_parts.h"
+#include "core/load/origins.h"
 #include "core/load/part_names.h"
 #include "core/load/reader_table.h"
+#include "core/plan/identity.h"
 
 enum { NAMES_MAX_BYTES = 16 << 20 };
 
@@ -221,6 +224,61 @@ static void count_series_bytes(const struct dicom_index *index, struct plan_summ
             summary->n_bytes += index->objects[index->stacks[s].objects[i]].n_bytes;
 }
 
+/* Adds the treatment plans at or below a path to those found. */
+static size_t find_treatment_plans(const struct folder *folder, const struct dicom_index *index, const char *path,
+                                   struct treatment_plan *found, size_t n)
+{
+    const struct dicom_object *object;
+    for (size_t i = 0; n < ORIGIN_MAX_TREATMENT_PLANS && (object = plan_dicom_object(index, DICOM_KIND_PLAN, path, i));
+         i++) {
+        struct plan_dicom_file opened;
+        struct report report = { 0 };
+        if (!plan_dicom_open(folder, object->path, &opened, NULL))
+            continue;
+        struct rtplan *plan = rtplan_read(opened.file, object->path, &report, NULL);
+        if (plan)
+            origin_treatment_plan(plan, object->patient, &found[n++]);
+        rtplan_destroy(plan);
+        report_finish(&report);
+        plan_dicom_close(&opened);
+    }
+    return n;
+}
+
+/* Chooses as plan_shown_patient does. */
+static void add_patient(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary)
+{
+    const struct dicom_index *index = parts->dicom;
+    struct treatment_plan found[ORIGIN_MAX_TREATMENT_PLANS];
+    size_t n = 0;
+    if (!index)
+        return;
+    for (size_t i = 0; i < parts->file->n_beam_files; i++)
+        n = find_treatment_plans(folder, index, parts->file->beam_files[i].path, found, n);
+    if (parts->is_all_dicom)
+        n = find_treatment_plans(folder, index, "", found, n);
+    const int shown = identity_first_treatment_plan(found, n);
+    int patient = shown >= 0 ? found[shown].patient : -1;
+    if (patient < 0 && index->n_stacks > 0)
+        patient = index->stacks[0].patient;
+    if (patient < 0 && index->n_patients > 0)
+        patient = 0;
+    summary->n_patients = index->n_patients;
+    summary->n_treatment_plans = n;
+    if (shown >= 0) {
+        memcpy(summary->label, found[shown].label, sizeof summary->label);
+        memcpy(summary->date, found[shown].date, sizeof summary->date);
+        memcpy(summary->approval, found[shown].approval, sizeof summary->approval);
+    }
+    if (patient >= 0 && (size_t)patient < index->n_patients) {
+        struct plan_patient named;
+        _Static_assert(sizeof summary->patient == IDENTITY_MASK_SIZE, "a masked patient fits");
+        origin_patient(&index->patients[patient], &named);
+        identity_mask(&named, summary->patient);
+        memcpy(summary->patient_id, named.id, sizeof summary->patient_id);
+    }
+}
+
 void plan_summarize(const char *path, struct plan_summary *summary)
 {
     struct folder folder = { .fd = -1 };
@@ -237,6 +295,7 @@ void plan_summarize(const char *path, struct plan_summary *summary)
         summary->is_phantom = file->is_phantom;
         size_t n_good = check_images(&folder, &parts, summary, &err);
         n_good += check_regions(&folder, &parts, summary, &err);
+        add_patient(&folder, &parts, summary);
         count_series_bytes(parts.dicom, summary);
         n_good += count_doses(&folder, &parts, summary);
         size_t n_beams = count_beams(&folder, &parts, summary);

@@ -218,13 +218,18 @@ void identity_words(const struct plan_patient *patient, char out[IDENTITY_WORDS_
     append_part(out, "born ", born);
 }
 
-int plan_shown_treatment_plan(const struct plan *plan)
+int identity_first_treatment_plan(const struct treatment_plan *plans, size_t n)
 {
-    int best = plan->n_treatment_plans > 0 ? 0 : -1;
-    for (size_t i = 1; i < plan->n_treatment_plans; i++)
-        if (is_shown_before(&plan->treatment_plans[i], &plan->treatment_plans[best]))
+    int best = n > 0 ? 0 : -1;
+    for (size_t i = 1; i < n; i++)
+        if (is_shown_before(&plans[i], &plans[best]))
             best = (int)i;
     return best;
+}
+
+int plan_shown_treatment_plan(const struct plan *plan)
+{
+    return identity_first_treatment_plan(plan->treatment_plans, plan->n_treatment_plans);
 }
 
 int plan_shown_patient(const struct plan *plan)

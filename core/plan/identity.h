@@ -20,5 +20,6 @@ void identity_words(const struct plan_patient *patient, char out[IDENTITY_WORDS_
 /* The treatment plan that is shown first: approved before without statement, before unapproved, before rejected; then
  * the newest by date and time, then the first. -1: the plan has none. */
 int plan_shown_treatment_plan(const struct plan *plan);
+int identity_first_treatment_plan(const struct treatment_plan *plans, size_t n); /* the same, of a list */
 /* The patient of that treatment plan; without one, of the image with most slices. -1: the files name nobody. */
 int plan_shown_patient(const struct plan *plan);

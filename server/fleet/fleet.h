@@ -87,6 +87,10 @@ int64_t fleet_rest_us(struct fleet *fleet, int64_t longest_us);
 /* A plan of the list. Strings and documents are borrowed until the next call into the fleet. */
 struct fleet_plan {
     const char *id, *folder, *name, *note;
+    /* of the treatment plan and the patient that are shown first, "": the files name none, or were not looked at yet;
+     * patient is masked, patient_id is never told to anybody: what people type is compared with it */
+    const char *patient, *patient_id, *label, *date, *approval;
+    int n_patients, n_treatment_plans;
     bool is_phantom, is_uploaded;
     bool has_plan_file; /* the folder has a plan.json */
     enum fleet_state state;

@@ -24,6 +24,10 @@ struct plan_entry {
                                     disk may still have it */
     char *folder;                /* absolute, links resolved */
     char name[128], note[512];
+    struct { /* as struct fleet_plan */
+        char masked[64], id[130], label[65], date[9], approval[17];
+        int n_patients, n_treatment_plans;
+    } shown;
     bool is_phantom;
     bool has_plan_file;
     enum fleet_state state;

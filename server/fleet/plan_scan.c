@@ -28,6 +28,12 @@ void plan_scans_start(struct fleet *fleet)
     }
 }
 
+static int count(const cJSON *json, const char *name)
+{
+    const double n = json_number(json, name, 0);
+    return n >= 0 && n < 1000 ? (int)n : 0;
+}
+
 /* The printed summary into the entry. Returns false with a reason when it is malformed or says that the plan cannot be
  * read. */
 static bool read_summary(struct plan_entry *plan, const cJSON *json, char reason[240])
@@ -41,6 +47,13 @@ static bool read_summary(struct plan_entry *plan, const cJSON *json, char reason
     if (json_text(json, "name") && json_text(json, "name")[0])
         json_put_text(plan->name, sizeof plan->name, json, "name");
     json_put_text(plan->note, sizeof plan->note, json, "note");
+    json_put_text(plan->shown.masked, sizeof plan->shown.masked, json, "patient");
+    json_put_text(plan->shown.id, sizeof plan->shown.id, json, "patient_id");
+    json_put_text(plan->shown.label, sizeof plan->shown.label, json, "label");
+    json_put_text(plan->shown.date, sizeof plan->shown.date, json, "date");
+    json_put_text(plan->shown.approval, sizeof plan->shown.approval, json, "approval");
+    plan->shown.n_patients = count(json, "n_patients");
+    plan->shown.n_treatment_plans = count(json, "n_treatment_plans");
     plan->is_phantom = json_flag(json, "phantom", false);
     plan->has_plan_file = json_flag(json, "has_plan_file", false);
     plan->n_bytes = n_bytes >= 0 && n_bytes < 9e15 ? (uint64_t)n_bytes : 0;

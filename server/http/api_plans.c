@@ -14,6 +14,12 @@ cJSON *api_plan_head(const struct fleet_plan *plan)
     cJSON_AddStringToObject(json, "id", plan->id);
     cJSON_AddStringToObject(json, "name", plan->name);
     cJSON_AddStringToObject(json, "note", plan->note);
+    cJSON_AddStringToObject(json, "patient", plan->patient);
+    cJSON_AddNumberToObject(json, "n_patients", plan->n_patients);
+    cJSON_AddStringToObject(json, "label", plan->label);
+    cJSON_AddStringToObject(json, "date", plan->date);
+    cJSON_AddStringToObject(json, "approval", plan->approval);
+    cJSON_AddNumberToObject(json, "n_plans", plan->n_treatment_plans);
     cJSON_AddBoolToObject(json, "is_phantom", plan->is_phantom);
     cJSON_AddBoolToObject(json, "uploaded", plan->is_uploaded);
     cJSON_AddBoolToObject(json, "has_plan_file", plan->has_plan_file);

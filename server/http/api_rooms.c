@@ -10,25 +10,19 @@
 #include "server/http/api_queries.h"
 #include "server/http/api_recordings.h"
 #include "server/http/etag.h"
+#include "server/net/listed.h"
 #include "server/room/state/body_check.h"
 
 enum { MAX_ASLEEP = 100 }; /* rooms that sleep, in the list of rooms */
 
 void api_rooms(struct api *api, struct call *call)
 {
-    cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms"), *row;
+    cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms");
+    struct net_listed row;
     size_t n_asleep = 0;
-    for (size_t i = 0; i < net_n_rooms(api->net); i++)
-        if ((row = net_room_row(api->net, i, &call->identity)))
-            json_append(list, row);
-    for (size_t i = 0; i < net_n_asleep(api->net); i++) {
-        if (!(row = net_asleep_row(api->net, i, &call->identity)))
-            continue;
-        if (n_asleep++ < MAX_ASLEEP)
-            json_append(list, row);
-        else
-            cJSON_Delete(row);
-    }
+    for (size_t i = 0; i < net_n_listed(api->net); i++)
+        if (net_listed_at(api->net, i, &call->identity, &row) && (i < net_n_rooms(api->net) || n_asleep++ < MAX_ASLEEP))
+            json_append(list, net_listed_document(api->net, i, &row));
     cJSON_AddNumberToObject(answer, "n_asleep", (double)n_asleep);
     call_answer_json(call, 200, answer);
 }

@@ -128,11 +128,6 @@ size_t net_n_asleep(const struct net *net);
 bool net_asleep_is_seen_by(const struct net *net, const char *room_id, const struct identity *who);
 /* Like room_is_listed_to, for a sleeping room; true of each for the machine's person. */
 bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct identity *who);
-/* Rows of the list of rooms: room_document, in a sleeping room without members, with is_mine (the user's own, one they
- * were in or asked to) and used_ms. NULL: it is not listed to this user, or nobody changed anything in it and nobody is
- * there. Of those that sleep the one last used is at 0. */
-NODISCARD cJSON *net_room_row(const struct net *net, size_t index, const struct identity *who);
-NODISCARD cJSON *net_asleep_row(const struct net *net, size_t index, const struct identity *who);
 /* False with problem busy: the database could not be opened since the start, so a room that is not found may be there.
  */
 NODISCARD bool net_rooms_are_known(const struct net *net, struct problem *problem);

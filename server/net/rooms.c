@@ -98,9 +98,7 @@ static void close_signed_out(void *context, void *connection)
 
 /* ---- rooms ------------------------------------------------------------------------------------------------------ */
 
-/* The id that the plan has now: rooms on the disk may have that of a time when people signed in, or when they did not.
- */
-static const char *plan_id_now(const struct net *net, const char *plan_id, char known[64])
+const char *rooms_plan_id_now(const struct net *net, const char *plan_id, char known[64])
 {
     struct fleet_plan plan;
     (void)snprintf(known, 64, "%s", fleet_plan_find(net->fleet, plan_id, &plan) ? plan.id : plan_id);
@@ -312,7 +310,7 @@ struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
     char known[64];
-    struct net_room *room = add_room(net, id, plan_id_now(net, plan_id, known));
+    struct net_room *room = add_room(net, id, rooms_plan_id_now(net, plan_id, known));
     room->keep.changed = net->store ? ROOM_ALL_PARTS : 0;
     schedule_at(net, 0);
     if (bookmark && !room_begin_with(room->room, bookmark, problem)) {
@@ -393,7 +391,7 @@ void net_rooms_delete_of_plan(struct net *net, const char *plan_id, const char *
             delete_of_plan(net, room_id(net->rooms[i]->room), plan_id, address, reason);
     char known[64];
     for (size_t i = net->n_asleep; i-- > 0;)
-        if (strcmp(plan_id_now(net, net->asleep[i].facts.plan, known), plan_id) == 0)
+        if (strcmp(rooms_plan_id_now(net, net->asleep[i].facts.plan, known), plan_id) == 0)
             delete_of_plan(net, net->asleep[i].facts.id, plan_id, address, reason);
 }
 
@@ -412,7 +410,7 @@ size_t net_n_decided_of_plan(const struct net *net, const char *plan_id)
         if (strcmp(room_plan_id(net->rooms[i]->room), plan_id) == 0)
             n += room_n_decided(net->rooms[i]->room);
     for (size_t i = 0; i < net->n_asleep; i++)
-        if (strcmp(plan_id_now(net, net->asleep[i].facts.plan, known), plan_id) == 0)
+        if (strcmp(rooms_plan_id_now(net, net->asleep[i].facts.plan, known), plan_id) == 0)
             n += net->asleep[i].facts.n_decided;
     return n;
 }
@@ -457,60 +455,6 @@ bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct i
     return has_role && (facts->is_open || (!facts->owner[0] && role == WIRE_MEMBER_ROLE_PLANNER));
 }
 
-/* Whether the user was in the room, owns it, or was asked in: a row of these is theirs. */
-static bool is_line_of(const char *lines, const char *line)
-{
-    const size_t n = strlen(line);
-    for (const char *at = lines; n && at && (at = strstr(at, line)); at++)
-        if ((at == lines || at[-1] == '\n') && at[n] == '\n')
-            return true;
-    return false;
-}
-
-static cJSON *add_use(cJSON *row, bool is_mine, int64_t used_ms)
-{
-    cJSON_AddBoolToObject(row, "is_mine", is_mine);
-    cJSON_AddNumberToObject(row, "used_ms", (double)used_ms);
-    return row;
-}
-
-cJSON *net_room_row(const struct net *net, size_t index, const struct identity *who)
-{
-    const struct net_room *entry = net->rooms[index];
-    const bool is_machine = who->source == IDENTITY_MACHINE;
-    struct store_room kept;
-    if (!is_machine && !room_is_listed_to(entry->room, who))
-        return NULL;
-    if (entry->empty_since_us && room_n_named(entry->room) > 0 && !room_was_changed(entry->room))
-        return NULL; /* it leaves no trace */
-    bool is_mine = is_machine || strcmp(room_owner(entry->room), who->user) == 0 || room_was_in(entry->room, who);
-    if (!is_mine && room_keep(entry->room, ROOM_PEOPLE, &kept)) {
-        is_mine = room_people_name(kept.owner, kept.people, who, true);
-        room_kept_finish(&kept);
-    }
-    const int64_t empty_ms = entry->empty_since_us ? (clock_now_us() - entry->empty_since_us) / 1000 : 0;
-    return add_use(room_document(entry->room), is_mine, clock_wall_ms() - empty_ms);
-}
-
-cJSON *net_asleep_row(const struct net *net, size_t index, const struct identity *who)
-{
-    const struct store_summary *facts = &net->asleep[index].facts;
-    char known[64];
-    if (!facts->is_changed || !net_asleep_is_listed_to(net, index, who))
-        return NULL;
-    const struct room_facts row = { .id = facts->id,
-                                    .plan_id = plan_id_now(net, facts->plan, known),
-                                    .name = facts->name,
-                                    .names = facts->names,
-                                    .revision = facts->revision,
-                                    .renderer = WIRE_RENDERER_STATE_CLOSED,
-                                    .created_at_s = facts->created_ms / 1000,
-                                    .n_notes = facts->n_notes };
-    const bool is_mine = who->source == IDENTITY_MACHINE || is_line_of(facts->users, who->user) ||
-                         room_people_name(facts->owner, facts->people, who, true);
-    return add_use(room_document_of(&row), is_mine, facts->used_ms);
-}
-
 /* ---- the store -------------------------------------------------------------------------------------------------- */
 
 void rooms_was_read(struct net *net, const struct store_answer *answer)
@@ -542,7 +486,7 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
     } else {
         asleep_remove(net, id);
         char known[64];
-        struct net_room *room = add_room(net, id, plan_id_now(net, plan, known));
+        struct net_room *room = add_room(net, id, rooms_plan_id_now(net, plan, known));
         keep_restore(room, answer->room);
         bridge_report_plan(room);
         schedule_settle(room);

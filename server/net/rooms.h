@@ -3,6 +3,9 @@
 #include "server/net/net_state.h"
 
 struct net_room *rooms_find(const struct net *net, const char *id);
+/* The id that the plan has now: rooms on the disk may have that of a time when people signed in, or when they did not.
+ */
+const char *rooms_plan_id_now(const struct net *net, const char *plan_id, char known[64]);
 /* Closes the room in memory; on disk it stays as it is. */
 void rooms_close(struct net *net, size_t index);
 /* Puts rooms to sleep that nobody was in for a while; deletes those that nobody ever used. */

@@ -229,6 +229,13 @@ cJSON *answer_summary(const struct plan_summary *summary)
     cJSON_AddBoolToObject(json, "has_plan_file", summary->has_plan_file);
     cJSON_AddBoolToObject(json, "readable", summary->is_readable);
     cJSON_AddStringToObject(json, "reason", summary->reason);
+    cJSON_AddStringToObject(json, "patient", summary->patient);
+    cJSON_AddStringToObject(json, "patient_id", summary->patient_id);
+    cJSON_AddNumberToObject(json, "n_patients", (double)summary->n_patients);
+    cJSON_AddStringToObject(json, "label", summary->label);
+    cJSON_AddStringToObject(json, "date", summary->date);
+    cJSON_AddStringToObject(json, "approval", summary->approval);
+    cJSON_AddNumberToObject(json, "n_treatment_plans", (double)summary->n_treatment_plans);
     cJSON *parts = cJSON_AddArrayToObject(json, "parts");
     for (size_t i = 0; i < summary->n_parts; i++)
         cJSON_AddItemToArray(parts, cJSON_CreateString(summary->parts[i]));

@@ -326,3 +326,68 @@ test('the command line tells who the patient is only when asked, and converts wi
   }
   rmSync(out, { recursive: true, force: true });
 });
+
+test('a search finds a plan by what is shown of its patient, and by the whole id only for who may read it; by its rooms; and counts', async () => {
+  const find = async (body, at = api) => {
+    const answer = await call(`${at}/plans/search`, 'POST', { kind: 'plan', ...body });
+    assert.equal(answer.status, 200, answer.text);
+    assertMasked(`search for ${JSON.stringify(body)}`, answer.text);
+    return answer.json;
+  };
+  const {
+    plans: [row],
+    ...counts
+  } = await find({});
+  assert.deepEqual(
+    [row.patient, row.label, row.date, row.approval, row.n_patients, row.n_plans],
+    ['Q. Z. …419', 'BNCT-2', '20261101', 'APPROVED', 2, 1],
+  );
+  const folder = plans.split('/').at(-1);
+  assert.deepEqual(counts, { total: 1, of: 1, next: null, folders: [{ name: folder, n: 1 }], n_all: 1, n_uploads: 0, n_no_plans: 0 });
+  const named = (await call(`${api}/rooms`, 'POST', { plan: 'case-1' })).json.id;
+  await call(`${api}/rooms/${named}`, 'PATCH', { name: 'Second look' });
+  const client = await Client.enter(daemon.url, named, { name: 'Dr Ojala' });
+  clients.push(client);
+  for (const [text, total] of [
+    ['…419', 1],
+    ['q. z.', 1],
+    ['bnct-2', 1],
+    ['SECOND LOOK', 1],
+    ['ojala', 1],
+    ['77-30419', 1],
+    ['7-304', 1], // a part of the id, for who may read it
+    ['99-99419', 0], // another's, who ends alike
+    ['Zweifel', 0],
+    ['nothing of it', 0],
+  ])
+    assert.equal((await find({ text })).total, total, text);
+  const rooms = (await find({ sort: 'used', folder })).plans[0].rooms;
+  const its = rooms.find(({ id }) => id === named);
+  assert.deepEqual([its.name, its.were_in, its.is_mine], ['Second look', ['Dr Ojala'], true]);
+  assert.equal((await find({ folder: 'elsewhere' })).of, 0);
+  for (const [field, value, code] of [
+    ['sort', 'age', 'enum'],
+    ['kind', 7, 'type'],
+    ['order', 'up', 'unknown-field'],
+  ]) {
+    const { status, json } = await call(`${api}/plans/search`, 'POST', { [field]: value });
+    assert.deepEqual([status, json.pointer, json.code], [422, `/${field}`, code]);
+  }
+  const open = await startDaemon({ plans: [plans], args: ['--stub', '--open-to-everybody', '--public-name', 'beamroom.example'] });
+  try {
+    const at = `${open.url}/api/v1`;
+    await until(
+      () => find({}, at),
+      ({ plans: [known] }) => known?.patient,
+    );
+    for (const [text, total] of [
+      ['…419', 1],
+      ['77-30419', 1], // by its end
+      ['99-99419', 1], // which tells nothing more
+      ['7-304', 0],
+    ])
+      assert.equal((await find({ text }, at)).total, total, text);
+  } finally {
+    await open.stop();
+  }
+});
