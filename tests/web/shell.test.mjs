@@ -91,5 +91,57 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
+  it('splitters are dragged, moved by keys, put back and kept; panes get pictures of their new size', async () => {
+    const page = await open();
+    const width = (selector) => page.locator(selector).evaluate((element) => Math.round(element.getBoundingClientRect().width));
+    const bar = (name) => page.getByRole('separator', { name });
+    const drag = async (name, dx, dy = 0) => {
+      const box = await bar(name).boundingBox();
+      const [x, y] = [box.x + box.width / 2, box.y + box.height / 2 - (dx ? 60 : 0)]; // not where two cross
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await page.mouse.move(x + dx / 2, y + dy / 2);
+      await page.mouse.move(x + dx, y + dy);
+      await page.mouse.up();
+    };
+    await page.mouse.move(300, 300); // what is loaded before the first click
+    await drag('Width of the tree', 60);
+    assert.equal(await width('.room > .tree'), 332);
+    await drag('Width of the tree', 400);
+    assert.equal(await width('.room > .tree'), 420);
+    await bar('Width of the inspector').focus();
+    await page.keyboard.press('ArrowLeft');
+    assert.equal(await width('.room > .inspector'), 336);
+    await page.keyboard.press('Home');
+    assert.equal(await width('.room > .inspector'), 280);
+    assert.ok(await page.locator('.inspector [role="tablist"]').evaluate((tabs) => tabs.scrollWidth <= tabs.clientWidth), 'tabs are whole');
+    await drag('Widths of the panes', -120);
+    const narrow = await width('[data-view="1"]');
+    assert.ok(narrow < (await width('[data-view="2"]')) - 200);
+    await page.waitForFunction(() =>
+      [1, 2, 3, 4].every((n) => {
+        const box = document.querySelector(`#picture-${n}`).getBoundingClientRect();
+        const { full_px: px } = globalThis.beamroom.stats().headers[n];
+        return Math.abs(px[0] - box.width) <= 1 && Math.abs(px[1] - box.height) <= 1;
+      }),
+    );
+    await full(page);
+    await shoot(page, 'splitters');
+    assert.deepEqual(await axe(page), []);
+    await page.reload();
+    await full(page);
+    assert.deepEqual([await width('.room > .tree'), await width('.room > .inspector'), await width('[data-view="1"]')], [420, 280, narrow]);
+    await page.mouse.move(500, 300);
+    await bar('Width of the tree').dblclick();
+    assert.equal(await width('.room > .tree'), 272);
+    await bar('Widths of the panes').focus();
+    await page.keyboard.press('Enter');
+    assert.equal(await width('[data-view="1"]'), await width('[data-view="2"]'));
+    await page.setViewportSize({ width: 820, height: 1180 });
+    await page.waitForFunction(() => document.querySelector('.room').dataset.size === 'tablet');
+    assert.equal(await page.getByRole('separator').count(), 0);
+    await page.context().close();
+  });
+
   it('has had no error', () => assert.deepEqual(world.errors, []));
 });

@@ -1,5 +1,6 @@
 // How this person has arranged the panes: the layout, which view stands in which pane, what moves together. Kept by the browser.
 import { effect, signal } from '../../lib/signals-core.js';
+import { readSplits } from './splits.js';
 import { say } from './words.js';
 
 const key = 'beamroom panes';
@@ -59,6 +60,7 @@ export class Layout {
     this.isZoomLinked = signal(kept.isZoomLinked === true); // slice panes share mm per pixel and where the crosshair stands
     this.areCamerasLinked = signal(kept.areCamerasLinked === true); // the two 3-D views turn together
     this.isBeamTogether = signal(kept.isBeamTogether !== false); // beam slice and clip plane slide together
+    this.splits = signal(readSplits(kept.splits)); // by the keys of splits.js
     effect(() =>
       write(storage, {
         layout: this.layout.value,
@@ -67,6 +69,7 @@ export class Layout {
         isZoomLinked: this.isZoomLinked.value,
         areCamerasLinked: this.areCamerasLinked.value,
         isBeamTogether: this.isBeamTogether.value,
+        splits: this.splits.value,
       }),
     );
   }

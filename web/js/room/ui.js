@@ -3,6 +3,7 @@ import { batch, computed, effect, signal } from '../../lib/signals-core.js';
 import { arrange } from './arrangement.js';
 import { Hotkeys } from './hotkeys.js';
 import { Layout } from './layout.js';
+import { splittersOf } from './splits.js';
 
 const toastMs = 6000;
 
@@ -61,6 +62,7 @@ export class UiState {
         maximised: this.maximised.value,
       }),
     );
+    this.splitters = computed(() => splittersOf(this.panes.splits.value, this.arrangement.value, this.window.value));
     effect(() => {
       if (this.tool.value !== 'measure') this.draft.value = null;
     });

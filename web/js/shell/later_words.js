@@ -2,6 +2,14 @@
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('shell.later', {
+  splitTree: 'Width of the tree',
+  splitInspector: 'Width of the inspector',
+  splitDrawer: 'Height of the plots',
+  splitColumns: 'Widths of the panes',
+  splitRows: 'Heights of the panes',
+  splitPx: '{n} px',
+  splitShare: '{n} % for the first',
+  splitBack: 'Double click or Enter: as it was',
   reviewer: 'Reviewer: points, writes notes, requests control',
   observer: 'Observer: looks and follows',
   presenter: 'Presenter: takes control, invites',

@@ -5,6 +5,7 @@ import { features, partsOf } from '../features/index.js';
 import { AfterRoom } from '../room/after_room.js';
 import { crosshair } from '../room/plan.js';
 import { views } from '../room/layout.js';
+import { splitVariables } from '../room/splits.js';
 import { RoomState } from '../room/room.js';
 import { UiState } from '../room/ui.js';
 import { Undo, listenUndo } from '../room/undo.js';
@@ -36,6 +37,7 @@ const lateMs = 150; // without the room's plan, after which the panels are drawn
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
 const filesBar = later(() => import('./files_bar.js'), 'js/features/fits/fit.css');
+const splitters = later(() => import('./splitters.js'), 'js/shell/splitters.css');
 const drawer = (world) => (world.ui.arrangement.value.drawer ? features.map(({ drawer: own }) => own?.draw(world)) : nothing);
 const dialogs = ['help', ...features.flatMap((feature) => feature.dialogs ?? [])];
 const floating = (world) => html`${help(world)}${ended(world)}${partsOf('dialog', world)}`;
@@ -73,6 +75,7 @@ export function roomPage(
   stops.push(
     redraw.watch(globalThis),
     loadBeforeClicks(),
+    effect(() => splitters.loaded.value?.placeSplitters(host, ui)),
     adapt(ui),
     effect(() => layOut(host.querySelector('.room'), ui)),
   ); // before the panes measure themselves: views open at their sizes
@@ -176,6 +179,7 @@ function whenKnown(room, clock, act) {
 function layOut(element, ui) {
   const { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout, visible } = ui.arrangement.value;
   Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout });
+  for (const [name, value] of Object.entries(splitVariables(ui.splitters.value))) element.style.setProperty(name, value);
   const panes = [...element.querySelectorAll('.pane')];
   const cells = [...ui.panes[layout === '2x1' || layout === '1x2' ? 'two' : 'four'].value];
   const order = [...cells, ...views.map((_, index) => index + 1).filter((n) => !cells.includes(n))].map((n) =>
@@ -222,6 +226,7 @@ function loadBeforeClicks() {
     loadBlocks();
     card.load();
     undoNames.load();
+    splitters.load();
   };
   for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
   return () => abort.abort();
