@@ -256,10 +256,9 @@ size_t net_n_meetings(const struct net *net)
     return net->meetings ? net->meetings->n : 0;
 }
 
-const struct meeting *net_meeting_at(struct net *net, size_t index)
+const struct meeting *net_meeting_at(const struct net *net, size_t index)
 {
-    struct meeting *meeting = net->meetings->list[index]->meeting;
-    return meeting ? look_at_all(net, meeting) : NULL;
+    return net->meetings->list[index]->meeting;
 }
 
 const struct meeting *net_meeting_find(struct net *net, const char *id)

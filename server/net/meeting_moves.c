@@ -32,7 +32,7 @@ bool net_meeting_role(const struct net *net, const struct meeting *meeting, cons
         return true;
     if (!meeting_allows(meeting, who, role))
         return false;
-    for (size_t i = 0; i < meeting->n_cases; i++)
+    for (size_t i = 0; i < meeting->n_cases && most < WIRE_MEMBER_ROLE_PLANNER; i++)
         if (meeting->cases[i]->plan[0] &&
             plan_rights_role(&net->plan_rights, net->fleet, who, meeting->cases[i]->plan, &found) && found > most)
             most = found;

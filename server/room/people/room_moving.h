@@ -30,11 +30,11 @@ bool room_present_of(const struct room *room, void *connection, struct room_pres
  * from now on as after a lost connection: for ROOM_PRESENTER_KEPT_S. False with problem limit: the room is full. */
 NODISCARD bool room_seat_make(struct room *room, const struct room_seat *seat, int64_t now_us, char id[64],
                               char secret[33], struct problem *problem);
-/* The member at this connection waits until the meeting is in a case that is open to it, or does not any more. */
 /* Tells the member that its meeting.next was refused after all. */
 void room_refuse_next(struct room *room, const char *member, const struct problem *problem);
 /* Puts out who came in by the link with these digits, which is none of the room's own; returns how many. */
 size_t room_remove_of_link(struct room *room, const char *digits, int64_t now_us);
+/* The member at this connection waits until the meeting is in a case that is open to it, or does not any more. */
 void room_set_waiting(struct room *room, void *connection, bool waits);
 void room_tell_meeting(struct room *room, void *connection, const struct message_meeting *told);
 void room_tell_case(struct room *room, void *connection, const struct message_meeting_case *told);
