@@ -51,13 +51,6 @@ static const struct gl_program *program_of(const struct gl_programs *programs, c
     return is_flat ? &programs->faceted : &programs->smooth;
 }
 
-void gl_set_lights(const struct gl_frame *frame, const struct gl_program *program)
-{
-    const struct visible_lights *l = &frame->lights;
-    frame->gl->Uniform4f(program->key_light, l->key[0], l->key[1], l->key[2], l->key_light);
-    frame->gl->Uniform4f(program->lights, l->fill_light, l->gloss, l->ambient, l->ambient_translucent);
-}
-
 static const struct gl_program *use_program(const struct gl_frame *frame, const struct draw *draw)
 {
     const struct gl *gl = frame->gl;
