@@ -97,6 +97,9 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await openEye();
     assert.ok((await shown()).includes(eye));
     const home = await matrixOf(eye);
+    const { width, height } = await page.locator(`#picture-${eye}`).boundingBox();
+    const part = (120 * (await scaleOf(eye))) / Math.min(width, height);
+    assert.ok(Math.abs(part - 0.7) < 0.01, `60 mm about the axis fill 70 % of the smaller side, not ${part}`);
     assert.ok(
       isNear(onPicture(home, target), [0, 0]) && isNear(onPicture(home, entry), [0, 0]),
       'entry and target lie one behind the other, in the middle',

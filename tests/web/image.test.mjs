@@ -157,6 +157,20 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     [800, 0.64],
   ].map(([value, opacity]) => ({ value, color: '#808080', opacity }));
   const volumeOf = async (image) => (await image()).volume;
+  /** Where the values vary least within the two classes, which is where they vary most between them. */
+  const leastWithin = ({ low, high, counts }) => {
+    const bin = (high - low) / counts.length;
+    const spread = (part) => {
+      const n = part.reduce((sum, [, count]) => sum + count, 0);
+      const mean = part.reduce((sum, [value, count]) => sum + value * count, 0) / (n || 1);
+      return part.reduce((sum, [value, count]) => sum + count * (value - mean) ** 2, 0);
+    };
+    const values = counts.map((count, at) => [low + (at + 0.5) * bin, count]);
+    const all = counts.slice(1).map((_, at) => spread(values.slice(0, at + 1)) + spread(values.slice(at + 1)));
+    const first = all.indexOf(Math.min(...all));
+    const last = all.findLastIndex((one) => one <= Math.min(...all) * (1 + 1e-12));
+    return { at: low + (1 + (first + last) / 2) * bin, bin };
+  };
   /** The volume's Selection with three points that the test knows. */
   const openVolume = async (options, toRow = (page) => row(page, 'volume:')) => {
     const opened = await open(options, { isMadeUp: true });
@@ -226,9 +240,16 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
       assert.deepEqual([skin.visible, skin.points.length], [true, 4]);
       await panel.getByLabel('Shaded').uncheck();
       await panel.getByLabel('Cut by clip planes').uncheck();
-      await panel.getByLabel('Leave out below').check();
       await panel.getByRole('radio', { name: 'Nearest' }).click();
       await panel.getByRole('radio', { name: 'Slices' }).click();
+      const { cull_below: threshold } = await until(
+        () => volumeOf(image),
+        ({ cull_below: below }) => below > -1e12,
+        20000,
+      );
+      const least = leastWithin(histogram);
+      assert.ok(Math.abs(threshold - least.at) <= least.bin, `${threshold}, by the variance within the classes ${least.at}`);
+      await panel.getByRole('slider', { name: 'Threshold of the volume' }).fill('-500');
       await enter(page, 'Number of slices', 64);
       const { points: _, ...rest } = await until(
         () => volumeOf(image),

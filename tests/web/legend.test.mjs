@@ -222,7 +222,7 @@ describe('the dose legend', { skip: missing && `${missing} is not there` }, () =
       assert.match(words, /in the body, from 10 %; [\d\s]+ of [\d\s]+ voxels/);
       assert.match(words, /mean .*, rms /);
       await page.locator('[data-dose="own"] button.name').click();
-    await page.getByRole('radiogroup', { name: 'Comparison' }).getByRole('radio', { name: 'Gamma' }).waitFor();
+      await page.getByRole('radiogroup', { name: 'Comparison' }).getByRole('radio', { name: 'Gamma' }).waitFor();
       await page.evaluate(() => {
         globalThis.seen = [];
         new MutationObserver(() =>

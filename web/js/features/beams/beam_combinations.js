@@ -258,7 +258,7 @@ const table = [
           noVolume,
           noPatientClips,
         ],
-        view: { beam: { aperture_mm: aperture, crosshair: true, along_mm: null } },
+        view: { beam: { aperture_mm: aperture, crosshair: true, along_mm: null }, camera: { height_mm: tenths(aperture / 0.7) } }, // as beam_eye.js fits it
       };
     },
   },

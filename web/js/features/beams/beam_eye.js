@@ -73,7 +73,36 @@ export function ringPatch(plan, beam, view, diameterMm) {
 }
 
 /** The whole plan again; ring and projection stay. */
-export const homeEye = () => ({ camera: { fov_deg: usualFovDeg, height_mm: null }, beam: { along_mm: null } });
+const homeEye = () => ({ camera: { fov_deg: usualFovDeg, height_mm: null }, beam: { along_mm: null } });
+
+const [filled, aroundMm] = [0.7, 60]; // part of the picture's smaller side; about the axis, without a ring
+
+/** The diameter of what the first picture is fitted to: the ring, else the regions as far as they lie within 60 mm of the axis. */
+function fittedMm(plan, beam, view) {
+  const ring = view.beam?.aperture_mm ?? null;
+  if (ring !== null) return ring;
+  const { right, up } = beamPlane(beam, beam.length);
+  const { low, high } = plan.bounds;
+  const reach = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
+    const d = subtract(
+      low.map((value, axis) => ((corner >> axis) & 1 ? high[axis] : value)),
+      beam.target,
+    );
+    return Math.hypot(dot(d, right), dot(d, up));
+  });
+  return 2 * Math.min(aroundMm, Math.max(...reach));
+}
+
+/** The camera that a beam's-eye view starts with: the ring, or the regions about the axis, fills 70 % of the smaller side. Ring and projection stay. */
+export function fittedEye(plan, beam, view) {
+  const home = { ...view, camera: { ...view.camera, ...homeEye().camera }, beam: { ...view.beam, ...homeEye().beam } };
+  const zoomed = zoomedEye(plan, beam, home, extentMm(plan, beam, home) / (fittedMm(plan, beam, view) / filled));
+  return { camera: { ...homeEye().camera, ...zoomed.camera }, beam: { ...homeEye().beam, ...zoomed.beam } };
+}
+
+/** True for a view whose camera nobody has moved. */
+export const isUntouched = (view) =>
+  (view.camera?.height_mm ?? null) === null && fovOf(view) === usualFovDeg && (view.beam?.along_mm ?? null) === null;
 
 /** The camera of a 3-D view with the same picture: it turns about the beam's target, about a point before the eye where that is behind it. */
 export function cameraAsSeen(plan, beam, view) {

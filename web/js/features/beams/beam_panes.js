@@ -2,7 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
 import { firstAlong, movers, placeOf, rangeAlong, regionAt, slidPatch } from './beam_along.js';
-import { cameraAsSeen, eyeAlong, homeEye, ringPatch, usualRingMm, zoomedEye } from './beam_eye.js';
+import { cameraAsSeen, eyeAlong, fittedEye, ringPatch, usualRingMm, zoomedEye } from './beam_eye.js';
 import { beamFacts } from './beam_facts.js';
 import { beamShown } from '../../room/beam_line.js';
 import { stepAcross } from '../../room/obliques.js';
@@ -132,7 +132,7 @@ class BeamSlice extends AlongBeam {
 }
 
 const ringHead = ({ ring, beside }) =>
-  html`<span class="beam-aperture" title=${`${ring}, ${beside}`}><b>${ring}</b><span class="dim">, ${beside}</span></span>`;
+  html`<span class="beam-aperture" title=${`${ring}, ${beside}`}><b>${ring}</b><span class="dim">,&nbsp;${beside}</span></span>`;
 
 class BeamEye extends AlongBeam {
   get #mover() {
@@ -201,7 +201,7 @@ class BeamEye extends AlongBeam {
   }
 
   reset(at) {
-    this.change(homeEye(), at);
+    this.change(fittedEye, at);
     return true;
   }
 

@@ -1,5 +1,6 @@
 // Panes along a beam, as far as every page has them: which pane shows the beam's eye, and what a pane shows whose beam has gone.
-import { effect } from '../../../lib/signals-core.js';
+import { effect, untracked } from '../../../lib/signals-core.js';
+import { mergePatch } from '../../wire/merge.js';
 import { beamShown } from '../../room/beam_line.js';
 import { beamSliceView, beamView } from '../../room/layout.js';
 import { isOfBeam, isTurnable } from '../../room/kinds.js';
@@ -17,12 +18,30 @@ export function showInstead(ui, from, to) {
   queueMicrotask(() => document.querySelector(`#picture-${to}`)?.focus({ preventScroll: true }));
 }
 
+/** The view of the beam's eye starts fitted to the ring or to what lies about the axis, if it was never shown. */
+async function fitFirst(room) {
+  const { fittedEye, isUntouched } = await import('./beam_eye.js');
+  const [plan, view] = [room.plan.peek(), room.view(beamView)];
+  const beam = beamShown(plan, room.scene.peek());
+  if (!beam || !isUntouched(view.document.peek())) return;
+  const patch = fittedEye(plan, beam, view.document.peek());
+  if (!view.isOpen.peek()) view.restart(mergePatch(view.document.peek(), patch));
+  else if (room.following.isPresenting.peek()) room.patchView(beamView, patch);
+}
+
+/** Fits it whatever has a pane show it: a key, a menu, a layout. @returns {() => void} stops */
+export const fitBeamEye = ({ room, ui }) =>
+  effect(() => {
+    if (ui.visible.value.includes(beamView) && room.plan.value && room.scene.value?.beam) untracked(() => void fitFirst(room));
+  });
+
 /** Key B: a 3-D pane, the active one if it is one, becomes the beam's eye, and that 3-D again. */
-export function toggleBeamEye(room, ui) {
+export async function toggleBeamEye(room, ui) {
   if (ui.visible.value.includes(beamView)) return void showInstead(ui, beamView, spaceInstead({ room, ui }));
   if (!beamShown(room.plan.value, room.scene.value)) return void ui.notify('ok', say.noBeam, 'beam');
   const from = [ui.active.value, ...ui.visible.value].find((number) => isTurnable(room.view(number).kind)) ?? ui.active.value;
   if (isTurnable(room.view(from).kind)) ui.beforeBeam = from;
+  await fitFirst(room).catch(() => {}); // a module that does not load: as before
   showInstead(ui, from, beamView);
 }
 

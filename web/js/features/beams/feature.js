@@ -1,7 +1,7 @@
 // Beams: shown, chosen, drafted, kept; panes along a beam; presets of beam, dose and volume.
 import { isOfBeam } from '../../room/kinds.js';
 import { known, later } from '../../parts/lazy.js';
-import { beamKey, leaveBeam, toggleBeamEye } from './beam_view.js';
+import { beamKey, fitBeamEye, leaveBeam, toggleBeamEye } from './beam_view.js';
 import { presetMenu } from './preset_menu.js';
 import { say } from './words.js';
 
@@ -48,5 +48,10 @@ export const beams = {
     isLocked: (kind) => kind === 'beam',
     code: later(() => import('./beam_panes.js'), 'js/features/beams/beam.css'),
   },
-  start: leaveBeam,
+  start: (world) => {
+    const stops = [leaveBeam(world), fitBeamEye(world)];
+    return () => {
+      for (const stop of stops) stop();
+    };
+  },
 };

@@ -19,6 +19,7 @@ import { coloursSelect, levelBlock, tableSelect } from './dose_level.js';
 import { componentNames } from './dose_probe.js';
 import { referenceMore, referenceSelect, tissueSelect } from './dose_reference.js';
 import { quantitySelect } from './dose_rows.js';
+import { surfacesPatch } from './level_list.js';
 import { bloodBlock, isoeffectiveBlock, weightsBlock } from './dose_weights.js';
 import { checkbox, numberField, segment } from '../../parts/fields.js';
 import { number, significant, unitText } from '../../parts/format.js';
@@ -47,7 +48,7 @@ export function doseBlock(world, isDisabled, change) {
     ${bloodBlock(world, shown, isDisabled, change)}
     ${isWeighted(quantity) ? weightsBlock(world, isDisabled, change) : nothing}
     ${quantity === 'isoeffective' ? isoeffectiveBlock(world, isDisabled, change) : nothing}
-    ${drawnBlock(ui, scene, isDisabled, change)}
+    ${drawnBlock(world, scene, isDisabled, change)}
     ${coverageBlock(world, isDisabled, change)}
     ${plan.doses.length > 1 ? html`${sumBlock(world, shown, isDisabled, change)}${compareBlock(world, isDisabled, change)}` : sumBlock(world, shown, isDisabled, change)}
     ${fileBlock(scene, shown, isDisabled, change)}`;
@@ -78,13 +79,13 @@ function otherBlock(dose, isDisabled, change, plan, scene) {
       <div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => change(choosePatch(plan, scene, dose), event)}>${say.showThis}</button></div></section>${factsBlock(dose)}`;
 }
 
-function drawnBlock(ui, scene, isDisabled, changeScene) {
+function drawnBlock({ ui, doses }, scene, isDisabled, changeScene) {
   const { wash, lines, surfaces, interpolation, error } = scene.dose;
   const change = (part, name) => (value, event) => changeScene({ dose: { [part]: { [name]: value } } }, event);
   const limits = (part, name, low, high) => (value, event) => change(part, name)(Math.min(Math.max(value, low), high), event);
   return html`<section class="block"><h3>${say.drawnAs}</h3>
     <div class="checks dose-checks">${checkbox(ui.keys.tip(say.lines, 'lines'), lines.visible, isDisabled, change('lines', 'visible'))}${checkbox(ui.keys.tip(say.washD, 'wash'), wash.visible, isDisabled, change('wash', 'visible'))}
-      ${checkbox(say.surfaces, surfaces.visible, isDisabled, change('surfaces', 'visible'), say.surfacesAre)}</div>
+      ${checkbox(say.surfaces, surfaces.visible, isDisabled, (isOn, event) => changeScene(surfacesPatch(scene, doses.reference.value, isOn), event), say.surfacesAre)}</div>
     <dl class="dose-list"><dt>${say.wash}</dt><dd>${segment(
       say.washStyle,
       [

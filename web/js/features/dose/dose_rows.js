@@ -20,6 +20,7 @@ import {
 import { doseWords } from '../../room/plan.js';
 import { isOfOtherPlan, planGroups } from '../../room/plan_groups.js';
 import { levelActions, levelRows } from './dose_levels.js';
+import { surfacesPatch } from './level_list.js';
 import { referenceSelect, tissueSelect } from './dose_reference.js';
 import { typed } from '../../parts/fields.js';
 import { listed, number } from '../../parts/format.js';
@@ -144,9 +145,11 @@ const switchWords = (ui, visible, id) => {
 };
 
 function switchRow(world, id, words) {
-  const { room, ui } = world;
+  const { room, ui, doses } = world;
   const { visible } = room.scene.value.dose[id];
-  const toggle = (event) => room.patchScene({ dose: { [id]: { visible: !visible } } }, how(ui, event));
+  const patch = () =>
+    id === 'surfaces' ? surfacesPatch(room.scene.value, doses.reference.value, !visible) : { dose: { [id]: { visible: !visible } } };
+  const toggle = (event) => room.patchScene(patch(), how(ui, event));
   return treeRow(
     world,
     {

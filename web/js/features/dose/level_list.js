@@ -63,3 +63,19 @@ export function convertedLevel(level, unit, reference) {
   const value = unit === 'dose' ? doseOf(level, reference) : percentOf(level, reference);
   return Number.isFinite(value) ? { unit, value: Number(value.toPrecision(6)) } : null;
 }
+
+const surfacesAt = [90, 70, 50]; // per cent
+
+/** The patch that switches the isodose surfaces. Switched on with none chosen, those of 90, 70 and 50 % come with them, else of the nearest visible levels:
+ *  never none. */
+export function surfacesPatch(scene, reference, isOn) {
+  const all = levelsOf(scene, reference);
+  if (!isOn || all.some(({ visible, surface }) => visible && surface)) return { dose: { surfaces: { visible: isOn } } };
+  const away = (level, percent) => Math.abs((percentOf(level, reference) || 0) - percent);
+  const left = all.filter(({ visible }) => visible);
+  const chosen = surfacesAt.flatMap((percent) => {
+    const nearest = left.reduce((best, level) => (best && away(best, percent) <= away(level, percent) ? best : level), null);
+    return nearest ? left.splice(left.indexOf(nearest), 1) : [];
+  });
+  return { dose: { surfaces: { visible: true }, levels: Object.fromEntries(chosen.map(({ id }) => [id, { surface: true }])) } };
+}

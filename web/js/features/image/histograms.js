@@ -42,3 +42,25 @@ export class Histograms {
 
 const isUsable = (answer) =>
   Array.isArray(answer?.counts) && answer.counts.length > 0 && Number.isFinite(answer.low) && answer.high > answer.low;
+
+/**
+ * The threshold between the dark and the bright values of an image: where the variance between the two classes is largest, in the middle where it is so
+ * in several places. N. Otsu, IEEE Trans. Syst. Man Cybern. 9 (1979) 62.
+ * @param {Histogram} histogram @returns {number} the upper end of the last dark bin, to three figures
+ */
+export function otsu({ low, high, counts }) {
+  const all = counts.reduce((sum, n) => sum + n, 0);
+  const whole = counts.reduce((sum, n, bin) => sum + n * bin, 0);
+  let [n, sum, most] = [0, 0, -1];
+  let best = [];
+  for (const [bin, count] of counts.slice(0, -1).entries()) {
+    n += count;
+    sum += count * bin;
+    if (!n || n === all) continue;
+    const between = n * (all - n) * (sum / n - (whole - sum) / (all - n)) ** 2;
+    if (between > most * (1 + 1e-12)) [most, best] = [between, []];
+    if (between >= most * (1 - 1e-12)) best.push(bin);
+  }
+  const middle = best.length ? (best[0] + best.at(-1)) / 2 : 0;
+  return Number((low + ((middle + 1) * (high - low)) / counts.length).toPrecision(3));
+}

@@ -128,6 +128,7 @@ export const say = sentences('image.later', {
   volumeBetween: 'Volume between voxels',
   leaveOutVolumeIs: 'Lower values are not drawn, by any method',
   leaveOutVolume: 'Leave out of the volume below',
+  leaveOutSlider: 'Threshold of the volume',
   transfer: 'Transfer function',
   transferOf: 'of {image}',
   transferPresets: 'Presets of the transfer function',

@@ -1,7 +1,10 @@
 // The image as a volume in the 3-D picture: its Selection in the inspector.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
+import { live } from '../../../lib/directives/live.js';
 import { cullsNothing, usualCull } from '../../room/image_look.js';
+import { significant, unitText } from '../../parts/format.js';
+import { otsu } from './histograms.js';
 import { shownImage } from '../../room/plan.js';
 import { isSamePoints, visiblePatch } from './transfer.js';
 import { presetPoints, presetsOfImage } from './volume_presets.js';
@@ -25,10 +28,15 @@ export function volumeBlock(world, isDisabled, changeScene) {
   const volume = scene.image.volume;
   if (!image) return nothing;
   const change = (patch, event) => changeScene({ image: { volume: patch } }, event);
+  const choose = async (method, event) => {
+    const { timeStamp } = event; // which is not the event's any more once it has been waited for
+    const cull = method === 'slices' && volume.cull_below <= cullsNothing ? await thresholdOf(world, image) : null;
+    if (room.canChange.value) change({ method, ...(cull !== null && { cull_below: cull }) }, { timeStamp });
+  };
   return html`<section class="block"><h3>${icon('cube')} ${say.volume} <span class="dim">${say.volumeOf({ image: image.name || image.modality })}</span></h3>
       <div class="checks">${checkbox(say.visible, volume.visible, isDisabled, (isOn, event) => changeScene(visiblePatch(plan, room.scene.value, isOn), event))}
         ${checkbox(say.cutByPlanes, volume.clipped, isDisabled, (clipped, event) => change({ clipped }, event))}</div>
-      <div class="shown-as"><span class="dim">${say.drawnBy}</span>${segment(say.method, methods, volume.method, isDisabled, (method, event) => change({ method }, event))}</div>
+      <div class="shown-as"><span class="dim">${say.drawnBy}</span>${segment(say.method, methods, volume.method, isDisabled, choose)}</div>
       <dl class="image-rows">${volume.method === 'slices' ? html`<dt>${say.slices}</dt><dd>${numberField(say.nSlices, volume.steps, '', isDisabled, (value, event) => change({ steps: Math.min(Math.max(Math.round(value), fewest), most) }, event))}</dd>` : nothing}
         <dt>${say.betweenVoxels}</dt><dd>${segment(
           say.volumeBetween,
@@ -40,15 +48,38 @@ export function volumeBlock(world, isDisabled, changeScene) {
           isDisabled,
           (interpolation, event) => change({ interpolation }, event),
         )}</dd></dl>
-      ${cullRow(image, scene, volume, isDisabled, change)}</section>
+      ${cullRow(world, image, volume, isDisabled, change)}</section>
     ${volume.method === 'ray' ? rayBlock(world, image, isDisabled, change) : nothing}`;
 }
 
-function cullRow(image, scene, volume, isDisabled, change) {
-  const isOn = volume.cull_below > cullsNothing;
-  return html`<div class="checks cull">${checkbox(say.leaveOut, isOn, isDisabled, (on, event) => change({ cull_below: on ? usualCull(image, scene.image.window) : cullsNothing }, event), say.leaveOutVolumeIs)}
-    ${isOn ? numberField(say.leaveOutVolume, Number(volume.cull_below.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>`;
+/** Opaque slices leave out what is below Otsu's threshold at first, so that air hides nothing. null: low values are white, or there is no histogram. */
+async function thresholdOf({ room, histograms }, image) {
+  const histogram = image.isInverted ? null : await histograms.load(room.planId.peek(), image.id);
+  return histogram && otsu(histogram);
 }
+
+function cullRow({ room, histograms }, image, volume, isDisabled, change) {
+  const isOn = volume.cull_below > cullsNothing;
+  const histogram = isOn ? histograms.of(room.planId.value, image.id) : null;
+  const set = async (on, event) => {
+    const { timeStamp } = event;
+    const own = on && volume.method === 'slices' ? await thresholdOf({ room, histograms }, image) : null;
+    const cull_below = on ? (own ?? usualCull(image, room.scene.value.image.window)) : cullsNothing;
+    if (room.canChange.value) change({ cull_below }, { timeStamp });
+  };
+  const value = Number(volume.cull_below.toPrecision(6));
+  return html`<div class="checks cull">${checkbox(say.leaveOut, isOn, isDisabled, set, say.leaveOutVolumeIs)}
+    ${isOn ? numberField(say.leaveOutVolume, value, image.unit, isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>
+    ${
+      histogram
+        ? html`<input class="cull-slider" type="range" min=${histogram.low} max=${histogram.high} step=${stepOf(histogram)} .value=${live(String(value))} aria-label=${say.leaveOutSlider} aria-valuetext=${`${significant(value)} ${unitText(image.unit)}`} ?disabled=${isDisabled}
+      @input=${(event) => change({ cull_below: event.target.valueAsNumber }, event)}>`
+        : nothing
+    }`;
+}
+
+/** Whole values of an image with many of them, else a part of the range. */
+const stepOf = ({ low, high }) => (Number.isInteger(low) && Number.isInteger(high) && high - low >= 64 ? 1 : (high - low) / 256);
 
 /** The presets of proto/volume_presets.json. */
 const presetNames = { Bone: say.bone, Skin: say.skin, 'Soft tissue': say.softTissue, Head: say.head, Brain: say.brain };
