@@ -87,7 +87,7 @@ $(GEN)/trial.c $(GEN)/trial_gen.c: $(TRIAL_STAMP) ;
 # core: everything but the main()s; wire: JSON edge shared by daemon, renderer and command line; server: the daemon's own.
 CORE_SRC := $(call c_files,core) $(sort $(wildcard core/formats/dicom/*.cc))
 WIRE_SRC := $(call c_files,server/wire)
-SERVER_SRC := $(call c_files,server/room server/meeting server/net server/front server/http server/ws server/tls server/fleet server/store server/auth)
+SERVER_SRC := $(call c_files,server/room server/meeting server/net server/front server/http server/ws server/tls server/fleet server/store server/auth server/paper)
 DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 UNPACK_SRC := $(filter-out %_run.c,$(sort $(wildcard server/renderer/unpack*.c)))

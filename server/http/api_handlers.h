@@ -69,6 +69,10 @@ void api_meeting_minutes(struct api *api, struct call *call);
 void api_audit(struct api *api, struct call *call);
 void api_records(struct api *api, struct call *call);
 void api_record(struct api *api, struct call *call);
+/* Whether the record that was read may be seen by the caller, else the call is answered: as if there were none. */
+bool api_record_may_be_seen(struct call *call, const struct net_record *records, size_t n,
+                            const struct problem *problem);
+void api_record_paper(struct api *api, struct call *call);
 void api_record_figure(struct api *api, struct call *call);
 /* Whether a room or plan (what) with these many decisions and signatures may be deleted: records=keep was said where
  * there are any. False: the call was answered. */

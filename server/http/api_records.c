@@ -76,7 +76,8 @@ static void cursor_was_read(void *context, const struct net_record *records, siz
 }
 
 /* False: the call was answered. One that the caller may not see is as one that is not there. */
-static bool may_see(struct call *call, const struct net_record *records, size_t n, const struct problem *problem)
+bool api_record_may_be_seen(struct call *call, const struct net_record *records, size_t n,
+                            const struct problem *problem)
 {
     struct problem missing;
     char text[100];
@@ -95,11 +96,13 @@ static bool may_see(struct call *call, const struct net_record *records, size_t 
 static void one_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
 {
     struct call *call = context;
-    if (!may_see(call, records, n, problem))
+    if (!api_record_may_be_seen(call, records, n, problem))
         return;
     cJSON *answer = describe(&records[0]);
     json_add(answer, "item", cJSON_CreateRaw(records[0].item));
     json_add(answer, "body", cJSON_CreateRaw(records[0].body));
+    json_add(answer, "signatures", cJSON_CreateRaw(records[0].signatures ? records[0].signatures : "[]"));
+    json_add(answer, "later_decisions", cJSON_CreateRaw(records[0].decisions ? records[0].decisions : "[]"));
     call_answer_json(call, 200, answer);
 }
 
@@ -127,7 +130,7 @@ void api_record(struct api *api, struct call *call)
 static void figure_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
 {
     struct call *call = context;
-    if (!may_see(call, records, n, problem))
+    if (!api_record_may_be_seen(call, records, n, problem))
         return;
     const char *word = call->ids[1];
     const int place = word[0] >= '1' && word[0] <= '0' + STORE_FIGURES && !word[1] ? word[0] - '1' : -1;

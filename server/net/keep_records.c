@@ -46,7 +46,9 @@ static void give(const struct record_reader *reader, const struct store_answer *
                                        .body = record->body,
                                        .hash = record->hash,
                                        .time_ms = record->time_ms,
-                                       .figures = record->figures };
+                                       .figures = record->figures,
+                                       .signatures = record->signatures,
+                                       .decisions = record->decisions };
     }
     reader->done(reader->context, list, answer->n_records, NULL);
     free(list);

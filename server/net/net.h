@@ -106,6 +106,7 @@ struct net_record {
     const char *id, *room, *plan, *kind, *author, *author_name, *item, *body, *hash;
     int64_t time_ms;
     const struct store_figure *figures; /* [STORE_FIGURES], of one record alone */
+    const char *signatures, *decisions; /* as in struct store_record */
 };
 typedef void net_records_read(void *context, const struct net_record *records, size_t n, const struct problem *problem);
 NODISCARD bool net_read_records(struct net *net, const char *id, const char *before, net_records_read *done,

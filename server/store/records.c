@@ -13,6 +13,8 @@ void store_record_finish(struct store_record *record)
 {
     free(record->item);
     free(record->body);
+    free(record->signatures);
+    free(record->decisions);
     for (size_t i = 0; i < STORE_FIGURES; i++)
         free(record->figures[i].bytes);
     *record = (struct store_record){ 0 };
@@ -102,6 +104,41 @@ static bool read_figures(sqlite3 *db, struct store_record *record, struct error 
     return ok;
 }
 
+/* One text for the record with its id; NULL with err. */
+static char *read_later(sqlite3 *db, const struct store_record *record, const char *sql, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db, sql, err);
+    char *text = NULL;
+    if (row) {
+        sql_bind_text(row, 1, record->id);
+        sql_bind_text(row, 2, record->room);
+    }
+    if (row && sqlite3_step(row) == SQLITE_ROW)
+        text = sql_copy_text(row, 0);
+    if (row && !text)
+        (void)sql_fail(db, "reading records", err);
+    (void)sqlite3_finalize(row);
+    return text;
+}
+
+/* Reads what was signed and decided in the room after a decision. */
+static bool read_since(sqlite3 *db, struct store_record *record, struct error *err)
+{
+    static const char signatures[] =
+        "WITH this(n) AS (SELECT max(n) FROM records WHERE id = ?1) SELECT json_group_array(json(item)) FROM (SELECT item"
+        " FROM records, this WHERE room = ?2 AND kind = 'signature' AND json_valid(item) AND records.n > this.n AND"
+        " records.n < coalesce((SELECT min(d.n) FROM records AS d WHERE d.room = ?2 AND d.kind = 'decision' AND d.n >"
+        " this.n), 9e18) ORDER BY records.n LIMIT 1000)";
+    static const char decisions[] =
+        "SELECT json_group_array(json(item)) FROM (SELECT item FROM records WHERE room = ?2 AND kind = 'decision' AND"
+        " json_valid(item) AND n > (SELECT max(n) FROM records WHERE id = ?1) ORDER BY n LIMIT 1000)";
+    if (strcmp(record->kind, "decision") != 0)
+        return true;
+    record->signatures = read_later(db, record, signatures, err);
+    record->decisions = record->signatures ? read_later(db, record, decisions, err) : NULL;
+    return record->decisions != NULL;
+}
+
 static bool read_record(sqlite3_stmt *row, bool is_whole, struct store_record *record)
 {
     *record = (struct store_record){ .time_ms = sqlite3_column_int64(row, 6) };
@@ -146,7 +183,7 @@ struct store_record *records_read(sqlite3 *db, const char *id, const char *befor
     }
     (void)sqlite3_finalize(row);
     if (ok && is_whole && *n == 1)
-        ok = read_figures(db, &records[0], err);
+        ok = read_figures(db, &records[0], err) && read_since(db, &records[0], err);
     if (ok && is_whole && *n == 0)
         ok = error_set(err, ERROR_NOT_FOUND, "there is no record \"%.63s\"", id);
     if (ok)

@@ -17,10 +17,13 @@ before(async () => {
   data = mkdtempSync(join(tmpdir(), 'beamroom-kept-'));
   folder = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
   execFileSync(join(bin, 'beamroom'), ['phantom', join(folder, 'small'), '--size', '48x48x32']);
-  cpSync(join(folder, 'small'), join(folder, 'other'), { recursive: true });
-  daemon = await startDaemon({ data, plans: [folder], args: ['--gl', 'soft'], env: { TZ: 'Europe/Helsinki' } });
-  api = `${daemon.url}/api/v1`;
+  for (const name of ['other', 'third']) cpSync(join(folder, 'small'), join(folder, name), { recursive: true });
+  await start('Europe/Helsinki');
 });
+async function start(zone) {
+  daemon = await startDaemon({ data, plans: [folder], args: ['--gl', 'soft'], env: { TZ: zone } });
+  api = `${daemon.url}/api/v1`;
+}
 after(async () => {
   for (const client of clients) client.cut();
   await daemon?.stop();
@@ -114,6 +117,72 @@ test('a decision is kept with pictures, histogram and limits of that moment, and
   );
   assert.equal((await call(at)).json.sha256, one.json.sha256);
   assert.equal(sha256((await picture(`${at}/figures/1`)).bytes), kept.figures[0].sha256);
+});
+
+/** The paper of a record without the line that says when it was printed. */
+async function paper(id) {
+  const { status, json, text } = await call(`${api}/records/${id}/paper`);
+  assert.equal(status, 200, text);
+  const { printed, ...rest } = json;
+  return { printed, rest };
+}
+const textsOf = ({ blocks }) => JSON.stringify(blocks);
+
+test('the paper is the same after weights, scene, name of the plan and time zone have changed, but for when it was printed', async () => {
+  const { room, client } = await enter('third', limits);
+  await put(client, 'note', { text: 'over \u202Eexe.gnp\u202C <b>bold</b> & "so"', anchor: { point_mm: [-1.5, 2, 30] } });
+  const item = await put(client, 'decision', { decision: 'accept-with-changes', text: 'Less gap' }),
+    before = await paper(item.id);
+  assert.match(before.printed, /^printed \d+ \w+ \d{4}, \d\d:\d\d:\d\d EET \(UTC\+2\)$/);
+  assert.match(before.rest.under, /^State of the decision, .* EET \(UTC\+2\)$/);
+  const words = textsOf(before.rest);
+  for (const said of [
+    'Accept with changes',
+    'Less gap',
+    'No draft beam stood at the decision.',
+    'mean ≥ 1.00 Gy(w)',
+    '✓ met',
+    'R 1.5, P 2.0, S 30.0 mm',
+  ])
+    assert.ok(words.includes(JSON.stringify(said).slice(1, -1)), said);
+  assert.ok(words.includes('over [RLO]exe.gnp[PDF] <b>bold</b> & \\"so\\"'), 'what does not show is a tag, markup is text');
+  assert.deepEqual(
+    before.rest.blocks.filter(({ type }) => type === 'figures').map(({ width, figures }) => [width, figures.map(({ place }) => place)]),
+    [
+      ['whole', [0]],
+      ['half', [1, 2]],
+      ['whole', [3]],
+    ],
+  );
+  await change(room, client, {
+    dose: { quantity: 'boron', weights: { target: { boron_ratio: 9 } }, blood_ppm: 30 },
+    image: { slices: { axial: { position_mm: -20 } } },
+    constraints: { 'limit-1': null },
+  });
+  client.cut();
+  await daemon.stop();
+  const file = join(folder, 'third', 'plan.json'),
+    plan = JSON.parse(readFileSync(file, 'utf8'));
+  writeFileSync(file, JSON.stringify({ ...plan, name: 'Another name' }));
+  await start('America/New_York');
+  const again = await paper(item.id);
+  assert.match(again.printed, /E[SD]T \(UTC-[45]\)$/);
+  assert.deepEqual(again.rest, before.rest);
+  // what is signed and decided afterwards is said
+  const ben = await Client.enter(daemon.url, room, { name: 'Ben' });
+  clients.push(ben);
+  await until(
+    () => call(`${api}/rooms/${room}/record`),
+    ({ status }) => status === 200,
+  );
+  const later = await call(`${api}/records/${item.id}`);
+  assert.deepEqual([later.json.signatures, later.json.later_decisions], [[], []]);
+  const signed = await put(ben, 'signature', { name: 'B. Example', meaning: 'seen' });
+  const { rest } = await paper(item.id);
+  assert.ok(textsOf(rest).includes('“B. Example”'));
+  const refused = await call(`${api}/records/${signed.id}/paper`);
+  assert.deepEqual([refused.status, refused.json.code], [409, 'kind']);
+  assert.equal((await call(`${api}/records/${item.id}/paper?identity=maybe`)).status, 422);
 });
 
 test('a decision without its renderer is kept all the same, and says what is missing', async () => {

@@ -95,11 +95,26 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   await ann.getByRole('button', { name: 'Page to print' }).click();
   await ann.getByRole('heading', { name: 'Record of a plan review' }).waitFor();
   assert.deepEqual(await axe(ann), []);
+  assert.deepEqual(
+    await ann.locator('.paper figure img').evaluateAll(async (pictures) => {
+      await Promise.all(pictures.map((picture) => picture.decode()));
+      return pictures.map(({ naturalWidth, naturalHeight }) => [naturalWidth, naturalHeight]);
+    }),
+    Array(4).fill([1600, 1200]),
+  );
+  await ann.emulateMedia({ media: 'print' });
+  const canvas = await ann.evaluate(() => {
+    const { colorScheme, backgroundColor } = getComputedStyle(document.documentElement);
+    return [colorScheme, backgroundColor, getComputedStyle(document.querySelector('.sheet-head')).display];
+  });
+  assert.deepEqual(canvas, ['light', 'rgb(255, 255, 255)', 'table-header-group'], 'no dark margins with background graphics on');
+  await ann.emulateMedia({ media: null });
   const squeezed = (text) => text.replace(/\s/g, '');
   const pages = textOfPages(await ann.pdf({ preferCSSPageSize: true, path: 'build/test-artifacts/record.pdf' })).map(squeezed);
   assert.ok(pages.length >= 1);
   for (const [at, text] of pages.entries()) {
     assert.match(text, /Researchuseonly/);
+    assert.match(text, /Id,issuer/, 'whose record it is, on every page');
     assert.ok(text.includes(`Page${at + 1}of${pages.length}`), text);
   }
   const narrow = await ann
@@ -116,6 +131,10 @@ test('two people check entries, decide and sign; it is there after a reload, in 
     'Mucosa above 10 Gy(w)',
     'B. Example',
     'Blood samples are in',
+    'Limits at the decision',
+    'No draft beam stood',
+    'Figure 3: Coronal',
+    'Hashes in full',
     'not electronic signatures',
   ])
     assert.ok(all.includes(squeezed(words)), words);

@@ -11,3 +11,18 @@ export async function fetchRecord(room, identity, isExport = false) {
   if (!response.ok || !answer) throw new Problem({ status: response.status, ...(answer ?? { detail: say.answered(response) }) });
   return answer;
 }
+
+const pathOf = (id) => `/api/v1/records/${encodeURIComponent(id)}`;
+
+/** Fetches the record of a decision as paper; recorded as an export. @param {string} id of the decision @param {boolean} isNamed with the patient's name */
+export async function fetchPaper(id, isNamed) {
+  const response = await fetch(`${pathOf(id)}/paper?identity=${isNamed}`).catch(() => {
+    throw new Problem({ detail: say.noAnswer });
+  });
+  const answer = await response.json().catch(() => null);
+  if (!response.ok || !answer) throw new Problem({ status: response.status, ...(answer ?? { detail: say.answered(response) }) });
+  return answer;
+}
+
+/** Where a kept picture is. @param {number} place from 0 on */
+export const pathOfFigure = (id, place) => `${pathOf(id)}/figures/${place + 1}`;

@@ -129,7 +129,7 @@ function check({ room }, { key, entry, text, row }, revision) {
 
 // ---- decision and signatures -------------------------------------------------------------------------------------------
 
-function lines(list, label, words) {
+function lines(list, label, words, more = () => nothing) {
   if (!list.length) return nothing;
   const facts = ({ row, isCorrected }) =>
     (isCorrected ? say.byRoleCorrected : say.byRoleAt)({
@@ -137,13 +137,32 @@ function lines(list, label, words) {
       role: wordOf(roles, row.body.role),
       time: when(row.created_ms),
     });
-  const line = (one) => html`<li data-corrected=${one.isCorrected}>${words(one.row)}<span class="dim">${facts(one)}</span></li>`;
+  const line = (one) =>
+    html`<li data-corrected=${one.isCorrected}>${words(one.row)}<span class="dim">${facts(one)}</span>${more(one.row)}</li>`;
   return html`<ol class="record-lines" aria-label=${label}>${list.map(line)}</ol>`;
 }
 
 const decisionWords = ({ body }) =>
   html`<b>${wordOf(decisions, body.decision)}</b>${body.text ? html`<span class="note-words">${body.text}</span>` : nothing}`;
 const signatureWords = ({ body }) => html`<b>${body.name}</b> <span>${wordOf(meanings, body.meaning)}</span>`;
+
+/** Opens the page to print of a decision, of a kept one alone. */
+async function printDecision(world, id) {
+  try {
+    const [{ openPaper }] = await Promise.all([
+      import('./record_paper.js'),
+      styled('js/features/report/printout.css').then(() => styled('js/features/record/paper.css')),
+    ]);
+    await openPaper(world, id);
+  } catch (problem) {
+    world.ui.notify('err', say.noPage({ why: problem.message }), 'record');
+  }
+}
+
+const printButton = (world) => (row) =>
+  world.room.control.mayExport
+    ? html`<button class="icon-button small" title=${say.printDecision} aria-label=${say.printDecision} @click=${() => printDecision(world, row.id)}>${icon('print', 12)}</button>`
+    : nothing;
 
 const option = ([id, name]) => html`<option value=${id}>${name}</option>`;
 
@@ -156,7 +175,8 @@ const corrects = (list, words) => {
     : nothing;
 };
 
-function decided({ room }, rows, revision) {
+function decided(world, rows, revision) {
+  const { room } = world;
   const list = linesOf(rows, 'decision', revision);
   const submit = async (event) => {
     event.preventDefault();
@@ -167,7 +187,7 @@ function decided({ room }, rows, revision) {
   };
   const { user, role } = meIn(room);
   const isMine = mayWrite(room) && (Boolean(user) || role === 'presenter'); // without sign-in presenters alone decide
-  return html`<section class="block"><h3>${say.decision}</h3>${lines(list, say.decisions, decisionWords)}
+  return html`<section class="block"><h3>${say.decision}</h3>${lines(list, say.decisions, decisionWords, printButton(world))}
     ${
       isMine
         ? html`<form class="record-form" @submit=${submit}><label>${say.decision} <select name="decision" required>
@@ -251,7 +271,10 @@ function exports(world) {
       ui.notify('err', say.noRecord({ why: problem.message }), 'record');
     }
   };
+  const decisionRows = [...room.items.rows.value.values()].filter(({ kind }) => kind === 'decision');
+  const newest = decisionRows.sort((a, b) => a.created_ms - b.created_ms).at(-1);
   const print = async () => {
+    if (newest) return printDecision(world, newest.id); // of the moment of the decision, not of now
     try {
       const [{ openRecordPrint }] = await Promise.all([import('./record_print.js'), styled('js/features/report/printout.css')]);
       await openRecordPrint(world);
