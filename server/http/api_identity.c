@@ -1,7 +1,5 @@
 /* GET /plans/{plan}/identity, and GET /rooms/{room}/identity for a wall on which somebody has it shown: the only
  * answers that name patients in full. As every answer of the API they are not stored (Cache-Control: no-store). */
-#include "server/http/api_identity.h"
-
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -12,7 +10,7 @@
 
 /* A person who has signed in has the right, which was asked for. Where nobody signs in, everybody who can reach the
  * server counts as the same person: names are given only where that is the person at this machine. */
-bool api_identity_may_read(const struct api *api, const struct call *call, struct problem *problem)
+static bool may_read(const struct api *api, const struct call *call, struct problem *problem)
 {
     if (call->identity.source == IDENTITY_MACHINE && !api_is_of_this_machine(api, call))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "identity",
@@ -56,7 +54,7 @@ void api_plan_identity(struct api *api, struct call *call)
     struct fleet_plan plan;
     struct problem problem;
     struct packet question;
-    if (!api_identity_may_read(api, call, &problem)) {
+    if (!may_read(api, call, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
@@ -124,7 +122,7 @@ void api_room_wall_identity(struct api *api, struct call *call)
     bool is_shown;
     if (!room)
         return;
-    if (!api_identity_may_read(api, call, &problem)) {
+    if (!may_read(api, call, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }

@@ -10,7 +10,6 @@
 #include "server/http/api_access.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
-#include "server/http/api_identity.h"
 #include "server/http/api_queries.h"
 #include "server/paper/paper.h"
 
@@ -18,7 +17,6 @@ struct paper_call { /* while the patient is asked for */
     cJSON *paper;
     char identity_hash[DIGEST_TEXT]; /* as it was kept; "": none was */
     char plan[64];
-    int shown_patient; /* index; -1: none */
 };
 
 static cJSON *read_text(const char *text)
@@ -92,7 +90,9 @@ static void patient_came(void *context, struct packet *answer, const struct prob
         paper_call_destroy(paper);
         return;
     }
-    const cJSON *patient = cJSON_GetArrayItem(patients, paper->shown_patient < 0 ? 0 : paper->shown_patient);
+    const cJSON *patient =
+        cJSON_GetArrayItem(patients,
+                           (int)json_number(cJSON_GetObjectItemCaseSensitive(paper->paper, "identity"), "patient", 0));
     if (patient)
         paper_name_patient(paper->paper, patient);
     net_audit_by(((struct api *)call->api)->net, &call->identity, call->client, "", paper->plan, "identity",
@@ -118,10 +118,7 @@ static void name_patient(struct api *api, struct call *call, struct paper_call *
         answer_paper(call, paper);
         return;
     }
-    if (!api_access_to_plan(api, call, ACCESS_IDENTITY, paper->plan))
-        problem_set(&problem, PROBLEM_FORBIDDEN, "", "identity",
-                    "who the patient is is not told to you: print it masked");
-    else if (api_identity_may_read(api, call, &problem)) {
+    if (api_may_name(api, call, paper->plan, &problem)) {
         call->context = paper;
         packet_init(&question, PACKET_IDENTITY);
         api_query_send(api, call, paper->plan, &question, patient_came);
@@ -146,9 +143,7 @@ static void record_was_read(void *context, const struct net_record *records, siz
         cJSON *body = read_text(records[0].body);
         const cJSON *kept = cJSON_GetObjectItemCaseSensitive(body, "kept");
         const char *hash = json_text(kept, "identity_sha256");
-        *paper = (struct paper_call){ .paper = make_paper(call->api, &records[0], body),
-                                      .shown_patient = (int)json_number(cJSON_GetObjectItemCaseSensitive(kept, "plan"),
-                                                                        "shown_patient", -1) };
+        *paper = (struct paper_call){ .paper = make_paper(call->api, &records[0], body) };
         (void)snprintf(paper->identity_hash, sizeof paper->identity_hash, "%.64s", hash ? hash : "");
         (void)snprintf(paper->plan, sizeof paper->plan, "%.63s", records[0].plan);
         cJSON_Delete(body);

@@ -98,9 +98,9 @@ static cJSON *describe_plan(const struct fleet_plan *plan)
         "id", "name", "is_phantom", "note", "shown_patient", "shown_plan", "treatment_plans", NULL
     };
     static const char *const of_patient[] = { "masked", "has_conflict", NULL };
-    static const char *const of_image[] = { "id", "name", "modality", "unit", NULL };
+    static const char *const of_image[] = { "id", "name", "modality", "unit", "patient", NULL };
     static const char *const of_region[] = { "id", "name", "color", "is_target", "voxels", "volume_cm3", NULL };
-    static const char *const of_dose[] = { "id", "name", "unit", "per", NULL };
+    static const char *const of_dose[] = { "id", "name", "unit", "per", "patient", "plan", NULL };
     static const char *const of_beam[] = { "id", "name", "aperture_mm", NULL };
     cJSON *json = cJSON_CreateObject();
     copy_fields(json, plan->document, whole);

@@ -149,11 +149,8 @@ static void add_basis(struct paper *paper)
                                                    { "Fields, fractions", 22, 'l' },
                                                    { "Boron in blood", 18, 'l' },
                                                    { "Dose shown", 38, 'l' } };
-    const cJSON *at = get(paper->plan, "shown_plan"), *dose = get(paper->kept, "dose"),
-                *style = get(paper->scene, "dose"), *reference = get(dose, "reference"),
-                *treatment = cJSON_IsNumber(at)
-                                 ? cJSON_GetArrayItem(get(paper->plan, "treatment_plans"), (int)at->valuedouble)
-                                 : NULL;
+    const cJSON *dose = get(paper->kept, "dose"), *style = get(paper->scene, "dose"),
+                *reference = get(dose, "reference"), *treatment = paper_treatment(paper);
     char value[PAPER_NUMBER];
     if (!paper->kept)
         return;

@@ -10,11 +10,42 @@ static const char research[] = "Research use only. Not a medical device; not for
 static const char open_words[] =
     "This server is open to everybody who reaches it. Anybody sees every plan here, under any name. Nothing can be signed.";
 
-static const cJSON *shown_of(const cJSON *plan, const char *index, const char *list)
+/* The part of a list of the kept plan with this id; NULL: it has none. */
+static const cJSON *part_of(const struct paper *paper, const char *list, const char *id)
 {
-    const cJSON *at = cJSON_GetObjectItemCaseSensitive(plan, index);
-    return cJSON_IsNumber(at) ? cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(plan, list), (int)at->valuedouble)
-                              : NULL;
+    const cJSON *part;
+    cJSON_ArrayForEach(part, cJSON_GetObjectItemCaseSensitive(paper->plan, list))
+    {
+        const char *of = json_text(part, "id");
+        if (id && of && strcmp(of, id) == 0)
+            return part;
+    }
+    return NULL;
+}
+
+static const cJSON *shown_dose(const struct paper *paper)
+{
+    return part_of(paper, "doses", json_text(cJSON_GetObjectItemCaseSensitive(paper->kept, "dose"), "id"));
+}
+
+/* As the page chooses them (web/js/room/identity.js): by the shown dose, else as the plan's document says. */
+const cJSON *paper_treatment(const struct paper *paper)
+{
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(paper->plan, "treatment_plans");
+    const double of_dose = json_number(shown_dose(paper), "plan", -1);
+    const cJSON *found = of_dose >= 0 && of_dose < 1e6 ? cJSON_GetArrayItem(list, (int)of_dose) : NULL;
+    return found ? found : cJSON_GetArrayItem(list, (int)json_number(paper->plan, "shown_plan", 0));
+}
+
+static int shown_patient(const struct paper *paper)
+{
+    const char *image = json_text(cJSON_GetObjectItemCaseSensitive(paper->kept, "fits"), "image");
+    double index = json_number(paper->plan, "shown_patient", -1);
+    if (!(index >= 0))
+        index = json_number(shown_dose(paper), "patient", -1);
+    if (!(index >= 0))
+        index = json_number(part_of(paper, "images", image), "patient", 0);
+    return index >= 0 && index < 1e6 ? (int)index : 0;
 }
 
 static void add_field(cJSON *fields, const char *label, cJSON *text, cJSON *more)
@@ -29,10 +60,16 @@ static void add_field(cJSON *fields, const char *label, cJSON *text, cJSON *more
 /* "Approved 12 Nov 2026" as the plan's file says it. */
 static cJSON *approval_of(const cJSON *treatment)
 {
+    static const char *const words[][2] = { { "APPROVED", "Approved" },
+                                            { "UNAPPROVED", "Unapproved" },
+                                            { "REJECTED", "Rejected" } };
     const char *state = json_text(treatment, "approval"), *date = json_text(treatment, "review_date");
     if (!state || !state[0])
         return written("approval not stated");
-    return written_format("%.1s%.40s%s%.20s", state, state + 1, date && date[0] ? " " : "", date ? date : "");
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strcmp(state, words[i][0]) == 0)
+            state = words[i][1];
+    return written_format("%.40s%s%.20s", state, date && date[0] ? " " : "", date ? date : "");
 }
 
 static const char *plan_label(const struct paper *paper, const cJSON *treatment)
@@ -45,8 +82,9 @@ static void add_identity(struct paper *paper)
 {
     cJSON *identity = cJSON_AddObjectToObject(paper->json, "identity"),
           *fields = cJSON_AddArrayToObject(identity, "fields");
-    const cJSON *patient = shown_of(paper->plan, "shown_patient", "patients"),
-                *treatment = shown_of(paper->plan, "shown_plan", "treatment_plans");
+    const int index = shown_patient(paper);
+    const cJSON *patient = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(paper->plan, "patients"), index),
+                *treatment = paper_treatment(paper);
     const bool is_phantom = json_flag(paper->plan, "is_phantom", false);
     const char *masked = json_text(patient, "masked"), *label = plan_label(paper, treatment),
                *who = masked && masked[0] ? masked
@@ -59,6 +97,7 @@ static void add_identity(struct paper *paper)
     json_add(identity, "line", written_format("%.200s \xc2\xb7 plan %.200s", who, label));
     json_add(identity, "plan", written(label));
     cJSON_AddBoolToObject(identity, "is_masked", true);
+    cJSON_AddNumberToObject(identity, "patient", index);
     if (paper->source->is_open)
         cJSON_AddStringToObject(paper->json, "strip", open_words);
 }

@@ -8,9 +8,11 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { bin, call, openPlan, startDaemon, until } from './daemon.mjs';
+import { putWhole } from './made_dicom.mjs';
 import { Client } from './ws_client.mjs';
 
 const sha256 = (bytes) => createHash('sha256').update(bytes).digest('hex');
+const quirin = { id: '77-30419', name: 'Zweifel^Quirin', birthDate: '19610412' };
 let data, folder, daemon, api;
 const clients = [];
 before(async () => {
@@ -18,6 +20,7 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
   execFileSync(join(bin, 'beamroom'), ['phantom', join(folder, 'small'), '--size', '48x48x32']);
   for (const name of ['other', 'third']) cpSync(join(folder, 'small'), join(folder, name), { recursive: true });
+  putWhole(join(folder, 'case-1'), quirin, { approval: 'APPROVED', label: 'BNCT-2' });
   await start('Europe/Helsinki');
 });
 async function start(zone) {
@@ -183,6 +186,35 @@ test('the paper is the same after weights, scene, name of the plan and time zone
   const refused = await call(`${api}/records/${signed.id}/paper`);
   assert.deepEqual([refused.status, refused.json.code], [409, 'kind']);
   assert.equal((await call(`${api}/records/${item.id}/paper?identity=maybe`)).status, 422);
+});
+
+test('the patient stands masked on paper, and in full for who may read that while the files name the same one', async () => {
+  const { client } = await enter('case-1');
+  const item = await put(client, 'decision', { decision: 'accept', text: '' }),
+    at = `${api}/records/${item.id}`;
+  const one = await call(at),
+    masked = await call(`${at}/paper`),
+    named = await call(`${at}/paper?identity=true`);
+  assert.match(one.json.body.kept.identity_sha256, /^[0-9a-f]{64}$/);
+  for (const secret of ['Zweifel', 'Quirin', '77-30419', '1961-04-12', '19610412'])
+    for (const { text } of [one, masked]) assert.ok(!text.includes(secret), secret);
+  assert.deepEqual(
+    masked.json.identity.fields.map(({ text, more }) => [text, more].join(' ').trim()),
+    ['Q. Z. …419', 'masked', 'masked', 'BNCT-2 Approved'],
+  );
+  assert.equal(named.status, 200, named.text);
+  assert.deepEqual(
+    named.json.identity.fields.slice(0, 3).map(({ text }) => text),
+    ['Zweifel^Quirin', '77-30419', '1961-04-12'],
+  );
+  assert.equal(named.json.identity.line, 'Zweifel^Quirin · 77-30419 · 1961-04-12 · plan BNCT-2');
+  client.cut();
+  assert.equal((await call(`${api}/plans/case-1/close`, 'POST')).status, 204);
+  rmSync(join(folder, 'case-1'), { recursive: true });
+  putWhole(join(folder, 'case-1'), { ...quirin, birthDate: '19610413' }, { approval: 'APPROVED' });
+  const { status, json } = await call(`${at}/paper?identity=true`);
+  assert.deepEqual([status, json.code], [409, 'identity']);
+  assert.equal((await call(`${at}/paper`)).status, 200);
 });
 
 test('a decision without its renderer is kept all the same, and says what is missing', async () => {
