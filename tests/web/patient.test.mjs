@@ -90,6 +90,17 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     await shows(page.locator('.patient-card'), 'No wall is in this room');
   });
 
+  it('who may compares the identities of both patients, and masks them again', async () => {
+    await page.getByRole('button', { name: 'Compare identities' }).click();
+    await shows(page.locator('.identities'), 'ZWEIFEL, Quirin');
+    const [shown, other] = await page.locator('.identities tr:has-text("Id") td').allTextContents();
+    assert.deepEqual([shown, other], ['77-30419', '88-50327']);
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'patient-compared');
+    await page.getByRole('button', { name: 'Mask them again' }).click();
+    assert.ok(!(await page.evaluate(() => document.documentElement.outerHTML)).match(/Quirin|Ottilie|77-30419/));
+  });
+
   it('a snapshot has the name only when that is ticked, off each time', async () => {
     const menu = page.getByRole('button', { name: 'Snapshot', exact: true });
     const tick = page.getByRole('checkbox', { name: 'with the patient’s identity' });

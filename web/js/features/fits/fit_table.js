@@ -1,6 +1,7 @@
 // The table ‘What fits what’ of the Plan tab, and the parts of other patients.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { partOf } from './fits.js';
+import { comparison, isCompared, toggleComparison } from '../patient/patient_card.js';
 import { partsOfOthers, patientOf, shownPatient } from '../../room/identity.js';
 import { shownImage } from '../../room/plan.js';
 import { icon } from '../../parts/icons.js';
@@ -52,7 +53,8 @@ export function fitsTable({ room }) {
 }
 
 /** The red bar: parts of several patients. */
-export function otherPatientsBar({ room }) {
+export function otherPatientsBar(world) {
+  const { room } = world;
   const [plan, scene] = [room.plan.value, room.scene.value];
   const others = plan && scene ? partsOfOthers(plan, scene) : [];
   if (!others.length) return nothing;
@@ -65,7 +67,12 @@ export function otherPatientsBar({ room }) {
   const label = plan.treatmentPlans.find(({ patient }) => plan.patients[patient] === shownPatient(plan, scene))?.label;
   const facts = { patient: shownPatient(plan, scene).masked, parts: byPatient.join('; '), plan: label };
   return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span>
-    <p><b>${say.severalPatients({ n: plan.patients.length })}</b> ${label ? say.shownOfPlanNot(facts) : say.shownNot(facts)}</p></div>`;
+    <p><b>${say.severalPatients({ n: plan.patients.length })}</b> ${label ? say.shownOfPlanNot(facts) : say.shownNot(facts)}</p>
+    ${
+      room.seesIdentity.value
+        ? html`<button aria-expanded=${isCompared(world)} @click=${() => void toggleComparison(world)}>${isCompared(world) ? say.maskThem : say.compareIdentities}</button>${comparison(world)}`
+        : nothing
+    }</div>`;
 }
 
 /** The rows of the tree's last section. */

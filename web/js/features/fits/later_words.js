@@ -34,6 +34,8 @@ export const say = sentences('fits.later', {
   severalPatients: 'This folder holds parts of {n} {n|patient|patients}.',
   shownNot: 'Shown: {patient}. Not used: {parts}.',
   shownOfPlanNot: 'Shown: {patient}, the patient of plan {plan}. Not used: {parts}.',
+  compareIdentities: 'Compare identities',
+  maskThem: 'Mask them again',
   partsAnd: '{parts} and {last}',
   partsOf: '{parts} of {patient}',
   neverUsed: '{part} {patient}, never used',

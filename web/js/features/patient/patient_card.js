@@ -12,6 +12,8 @@ const hiddenMs = 5 * 60 * 1000;
 
 /** {room: whose page, patient: of its plan, name, id, birth}; null: masked. */
 const identity = signal(null);
+/** All patients of a folder that holds parts of several, side by side: {room, plan, patients}; null: masked. */
+const compared = signal(null);
 const state = signal({ error: '', isAsked: false });
 let timer = null;
 let hiddenTimer = null;
@@ -29,12 +31,13 @@ function hide() {
   clearTimeout(hiddenTimer);
   unwatch();
   identity.value = null;
+  compared.value = null;
 }
 
 /** A page that nobody has looked at for five minutes may be looked at by somebody else. */
 document.addEventListener('visibilitychange', () => {
   clearTimeout(hiddenTimer);
-  if (document.hidden && identity.peek()) hiddenTimer = setTimeout(hide, hiddenMs);
+  if (document.hidden && (identity.peek() || compared.peek())) hiddenTimer = setTimeout(hide, hiddenMs);
 });
 
 /** At the end of the sign-in, and with the room, it is masked again. */
@@ -51,31 +54,77 @@ export function shownIdentity({ room }) {
   return known && patient && known.room === room && known.patient === patient ? known : null;
 }
 
-async function show({ room, api }) {
+/** The identities of the plan's patients, of which the audit has a row; null with state.error: not told. */
+async function ask({ room, api }) {
   const asked = room.plan.peek();
   state.value = { error: '', isAsked: true };
   try {
     const path = `plans/${encodeURIComponent(room.planId.peek())}/identity?room=${room.id}`;
     const { patients } = await api.call('GET', path, { more: ofMember(room.identity) });
-    const [plan, scene] = [room.plan.peek(), room.scene.peek()];
-    const found = plan === asked ? identityOf(plan, scene, patients) : null;
-    hide();
-    if (found) {
-      identity.value = {
-        room,
-        patient: shownPatient(plan, scene),
-        name: nameWords(found.name ?? ''),
-        id: found.id ?? '',
-        birth: found.birth_date ?? '',
-      };
-      timer = setTimeout(hide, shownMs);
-      watch(room);
-    }
-    state.value = { error: found ? '' : say.changed, isAsked: false };
+    const isSame = room.plan.peek() === asked && patients.length === asked.patients.length;
+    state.value = { error: isSame ? '' : say.changed, isAsked: false };
+    return isSame ? patients : null;
   } catch (problem) {
     state.value = { error: problem.message, isAsked: false };
+    return null;
   }
 }
+
+/** What was told is hidden after a while, at the latest. */
+function keepAWhile(room) {
+  timer = setTimeout(hide, shownMs);
+  watch(room);
+}
+
+async function show(world) {
+  const { room } = world;
+  const patients = await ask(world);
+  const [plan, scene] = [room.plan.peek(), room.scene.peek()];
+  const found = patients && identityOf(plan, scene, patients);
+  if (patients && !found) state.value = { error: say.changed, isAsked: false };
+  hide();
+  if (!found) return;
+  const { name = '', id = '', birth_date: birth = '' } = found;
+  identity.value = { room, patient: shownPatient(plan, scene), name: nameWords(name), id, birth };
+  keepAWhile(room);
+}
+
+// ---- several patients ------------------------------------------------------------------------------------------------------
+
+/** Shows the identities of all patients of the folder, or hides them again. */
+export async function toggleComparison(world) {
+  if (compared.peek()) return void hide();
+  const patients = await ask(world);
+  hide();
+  if (!patients) return;
+  compared.value = { room: world.room, plan: world.room.plan.peek(), patients };
+  keepAWhile(world.room);
+}
+
+/** The patients side by side, below the bar that tells of them; nothing while they are masked. */
+export function comparison({ room }) {
+  const { error } = state.value;
+  const known = compared.value;
+  if (error) return html`<p class="note err" role="alert">${error}</p>`;
+  if (!known || known.room !== room || known.plan !== room.plan.value) return nothing;
+  const shown = shownPatient(room.plan.value, room.scene.value);
+  const columns = known.patients.map((patient, n) => ({ ...patient, isShown: room.plan.value.patients[n] === shown }));
+  const rows = [
+    [say.name, ({ name }) => nameWords(name)],
+    [say.id, ({ id }) => id],
+    [say.issuer, ({ issuer }) => issuer],
+    [say.born, ({ birth_date: birth }) => birth],
+    [say.sex, ({ sex }) => sex],
+  ].filter(([, of]) => columns.some(of));
+  const differs = (of) => new Set(columns.map(of)).size > 1;
+  return html`<table class="identities"><thead><tr><td></td>${columns.map(({ isShown }) => html`<th scope="col">${isShown ? say.isShown : say.isNotUsed}</th>`)}</tr></thead>
+    <tbody>${rows.map(
+      ([word, of]) =>
+        html`<tr class=${differs(of) ? 'differs' : ''}><th scope="row">${word}</th>${columns.map((one) => html`<td>${of(one) || say.notGiven}</td>`)}</tr>`,
+    )}</tbody></table><p class="note">${say.alone({ n: shownMinutes })}</p>`;
+}
+
+export const isCompared = ({ room }) => compared.value?.room === room;
 
 // ---- on a wall ------------------------------------------------------------------------------------------------------------
 
