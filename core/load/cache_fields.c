@@ -478,6 +478,7 @@ static void fields_origin(struct fields *fields, struct part_origin *origin, con
     fields_text(fields, origin->series_uid, sizeof origin->series_uid);
     fields_text(fields, origin->plan_uid, sizeof origin->plan_uid);
     fields_text(fields, origin->structs_uid, sizeof origin->structs_uid);
+    fields_text(fields, origin->set_label, sizeof origin->set_label);
     fields_text(fields, origin->path, sizeof origin->path);
     fields_bool(fields, &origin->is_registered);
     fields_bool(fields, &origin->is_stated_same);

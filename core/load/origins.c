@@ -130,6 +130,8 @@ struct part_origin origin_of_reading(const struct loading *loading, const struct
         origin_of_object(loading, reading, object, &origin);
         path = object->path;
     }
+    if (reading->structs)
+        snprintf(origin.set_label, sizeof origin.set_label, "%s", reading->structs->label);
     snprintf(origin.path, sizeof origin.path, "%s", path);
     return origin;
 }

@@ -53,6 +53,7 @@ struct part_origin {
     char series_uid[ORIGIN_UID_SIZE];  /* an image's own; of regions the series they were drawn on */
     char plan_uid[ORIGIN_UID_SIZE];    /* RTPLAN that a dose refers to, or a beam comes from; "" none stated */
     char structs_uid[ORIGIN_UID_SIZE]; /* of regions their own structure set; of a dose the one it refers to */
+    char set_label[128];               /* of regions: how their structure set is called; "" not given */
     char path[512];                    /* of its first file, relative to the plan's folder */
     bool is_registered;                /* a registration brought it into frame_uid while loading (core/load) */
     bool is_stated_same;               /* plan.json says that its frame is the image's */

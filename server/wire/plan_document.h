@@ -48,7 +48,8 @@
  *
  * Each image, region, dose and beam has its origins: patient and plan, indices in patients and treatment_plans;
  * is_plan_absent: its files name a treatment plan that is not here; frame and study, numbers of its frame of reference
- * and its study; a region, and a treatment plan, also structs, the number of its structure set. null: not stated, or
+ * and its study; a region, and a treatment plan, also structs, the number of its structure set; a region that has the
+ * name of one of another file also set, the label of its structure set, or its file. null: not stated, or
  * not here. Equal numbers mean the same frame, study or set.
  *
  *   point      [L, P, S] in mm

@@ -96,6 +96,76 @@ static void add_to_list(const cJSON *document, const char *name, const struct pl
         add_origin(part, plan, numbers, origins++);
 }
 
+/* ---- regions of one name ---------------------------------------------------------------------------------------- */
+
+struct named {
+    const char *name;
+    const struct part_origin *origin; /* NULL: not known */
+    size_t index;
+};
+
+static int by_name(const void *a, const void *b)
+{
+    const struct named *left = a, *right = b;
+    const int order = strcmp(left->name, right->name);
+    return order ? order : left->index < right->index ? -1 : left->index > right->index;
+}
+
+static const char *label_of(const struct part_origin *origin)
+{
+    return origin ? origin->set_label : "";
+}
+
+static const char *file_of(const struct part_origin *origin)
+{
+    const char *slash = origin ? strrchr(origin->path, '/') : NULL;
+    return slash ? slash + 1 : origin ? origin->path : "";
+}
+
+/* Adds to the regions of one name, of which some are of other files, what tells them apart: the label of their
+ * structure set, or where another has the same the name of their file. */
+static void tell_apart(cJSON *const *parts, const struct named *group, size_t n)
+{
+    bool is_of_others = false, has_labels = true;
+    for (size_t i = 1; i < n; i++)
+        is_of_others = is_of_others || group[i].origin != group[0].origin;
+    for (size_t i = 0; i < n && is_of_others && has_labels; i++) {
+        has_labels = label_of(group[i].origin)[0] != 0;
+        for (size_t j = 0; j < i && has_labels && i < 64; j++) /* of more, the files tell */
+            has_labels =
+                group[i].origin == group[j].origin || strcmp(label_of(group[i].origin), label_of(group[j].origin)) != 0;
+    }
+    for (size_t i = 0; i < n && is_of_others; i++)
+        json_add(parts[group[i].index], "set",
+                 cJSON_CreateString(has_labels && n <= 64 ? label_of(group[i].origin) : file_of(group[i].origin)));
+}
+
+static void tell_regions_apart(const cJSON *list, const struct plan *plan)
+{
+    const size_t n = plan->regions.n_regions;
+    size_t i = 0;
+    if (plan->n_region_origins < 2)
+        return;
+    struct named *named = mem_new((n + 1) * sizeof *named); /* at most REGION_MAX */
+    cJSON **parts = mem_new((n + 1) * sizeof *parts);
+    for (cJSON *part = list ? list->child : NULL; part && i < n; part = part->next, i++) {
+        const struct region *region = &plan->regions.regions[i];
+        const bool is_known = region->origin > 0 && region->origin <= plan->n_region_origins;
+        parts[i] = part;
+        named[i] = (struct named){ region->name, is_known ? &plan->region_origins[region->origin - 1] : NULL, i };
+    }
+    if (i > 1)
+        qsort(named, i, sizeof *named, by_name);
+    for (size_t first = 0, last; first < i; first = last) {
+        for (last = first + 1; last < i && strcmp(named[last].name, named[first].name) == 0;)
+            last++;
+        if (last - first > 1)
+            tell_apart(parts, named + first, last - first);
+    }
+    free(parts);
+    free(named);
+}
+
 static void add_to_regions(const cJSON *document, const struct plan *plan, const struct numbers *numbers)
 {
     static const struct part_origin unknown = { .patient = -1, .treatment_plan = -1 };
@@ -108,6 +178,7 @@ static void add_to_regions(const cJSON *document, const struct plan *plan, const
         json_add(part, "source", is_known ? cJSON_CreateNumber((double)region->origin) : cJSON_CreateNull());
         json_add(part, "structs", number_of(&numbers->structs, origin->structs_uid));
     }
+    tell_regions_apart(list, plan);
 }
 
 static cJSON *patients_array(const struct plan *plan)

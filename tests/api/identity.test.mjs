@@ -8,7 +8,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { inflateSync } from 'node:zlib';
 import { bin, call, openPlan, startDaemon, until } from './daemon.mjs';
-import { putDose, putWhole } from './made_dicom.mjs';
+import { putDose, putStructs, putWhole } from './made_dicom.mjs';
 import { Client } from './ws_client.mjs';
 
 const quirin = { id: '77-30419', name: 'Zweifel^Quirin', birthDate: '19610412' };
@@ -110,6 +110,20 @@ test('the plan document has patients masked, and says of which of them each part
       [1, null, false, 1],
     ],
   );
+});
+
+test('regions of one name say which structure set is theirs, by its label or else its file', async () => {
+  const sets = async (plan) => (await call(`${api}/plans/${plan}`)).json.regions.map(({ name, set }) => [name, set]);
+  const folder = join(plans, 'case-3');
+  putWhole(folder, quirin);
+  assert.deepEqual(await sets('case-1'), [['Box', undefined]]);
+  putStructs(folder, quirin, { uid: '1.2.64', file: 'second.dcm', label: 'After', left: 2 });
+  await openPlan(daemon.url, 'case-3');
+  assert.deepEqual((await sets('case-3')).map(([, set]) => set).sort(), ['After', 'Set']);
+  putStructs(folder, quirin, { uid: '1.2.65', file: 'third.dcm', label: 'After', left: 4 });
+  await call(`${api}/plans/case-3/close`, 'POST', {});
+  await openPlan(daemon.url, 'case-3');
+  assert.deepEqual((await sets('case-3')).map(([, set]) => set).sort(), ['second.dcm', 'structs.dcm', 'third.dcm']);
 });
 
 test('identity is told in full, is never stored, and each time is a row of the audit', async () => {

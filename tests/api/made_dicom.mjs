@@ -96,7 +96,11 @@ export function putImages(folder, owner, { series = '1.2.51', modality = 'CT', p
 }
 
 /** A box, named, of 12 x 12 mm on the slices from 3 to 15 mm, moved toward the left by `left` mm. */
-export function putStructs(folder, owner, { uid = '1.2.61', series = '1.2.51', file = 'structs.dcm', name = 'Box', left = 0 } = {}) {
+export function putStructs(
+  folder,
+  owner,
+  { uid = '1.2.61', series = '1.2.51', file = 'structs.dcm', name = 'Box', left = 0, label = 'Set' } = {},
+) {
   const frame = owner.frame ?? '1.2.41';
   const contours = [1, 2, 3, 4, 5].map((k) => [
     [0x30060042, 'CS', 'CLOSED_PLANAR'],
@@ -111,7 +115,7 @@ export function putStructs(folder, owner, { uid = '1.2.61', series = '1.2.51', f
     join(folder, file),
     dicomFile([
       ...owned(owner, '481.3', uid, 'RTSTRUCT', '1.2.62'),
-      [0x30060002, 'SH', 'Set'],
+      [0x30060002, 'SH', label],
       frames,
       sequence(0x30060020, [
         [0x30060022, 'IS', 1],

@@ -8,8 +8,8 @@
  * cache that loses it. */
 #define IS_COMPARED_UP_TO(type, bytes) \
     _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
-IS_COMPARED_UP_TO(struct plan, 1242696);
-IS_COMPARED_UP_TO(struct part_origin, 856);
+IS_COMPARED_UP_TO(struct plan, 1255112);
+IS_COMPARED_UP_TO(struct part_origin, 984);
 IS_COMPARED_UP_TO(struct plan_patient, 422);
 IS_COMPARED_UP_TO(struct treatment_plan, 408);
 IS_COMPARED_UP_TO(struct plan_registration, 240);
@@ -280,6 +280,7 @@ static void same_origin(const struct part_origin *a, const struct part_origin *b
     assert_string_equal(a->series_uid, b->series_uid);
     assert_string_equal(a->plan_uid, b->plan_uid);
     assert_string_equal(a->structs_uid, b->structs_uid);
+    assert_string_equal(a->set_label, b->set_label);
     assert_string_equal(a->path, b->path);
     assert_int_equal(a->is_registered, b->is_registered);
     assert_int_equal(a->is_stated_same, b->is_stated_same);

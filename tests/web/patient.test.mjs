@@ -131,6 +131,8 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
       return [dose.id, beam.id, Object.entries(regions).map(([id, { visible }]) => `${id} ${visible}`)].flat(2);
     };
     const before = await facts();
+    const regions = () => two.locator('.row[data-region] .name').allTextContents();
+    assert.deepEqual(await regions(), ['Box, structs.dcm', 'Box, structs2.dcm']); // both sets are called Set
     await two.locator('.plan-button').click();
     assert.deepEqual(await axe(two), []);
     await two.getByRole('menuitemradio', { name: /BNCT-1/ }).click();

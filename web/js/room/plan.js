@@ -46,6 +46,9 @@ function readImage(image) {
   };
 }
 
+/** Regions of one name and several structure sets have the set's behind it everywhere; fileName: as in the file. */
+const toldApart = (region) => ({ ...region, fileName: region.name, name: region.set ? `${region.name}, ${region.set}` : region.name });
+
 /** Regions in file order, but every region after the one that contains it. */
 function inOrder(regions) {
   const known = new Set(regions.map((region) => region.id));
@@ -81,7 +84,7 @@ export function readPlan(document) {
     note: document.note ?? '',
     isPhantom: Boolean(document.is_phantom),
     images,
-    regions: inOrder(document.regions ?? []),
+    regions: inOrder((document.regions ?? []).map(toldApart)),
     hierarchy: document.hierarchy ?? 'none',
     doses: document.doses ?? [],
     beams: document.beams ?? [],

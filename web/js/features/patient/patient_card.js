@@ -70,7 +70,7 @@ async function ask({ room, api }) {
   }
 }
 
-/** What was told is hidden after a while, at the latest. */
+/** Hides what was told after a while, at the latest. */
 function keepAWhile(room) {
   timer = setTimeout(hide, shownMs);
   watch(room);

@@ -14,7 +14,7 @@ function regionsPatch(plan, scene, from, to) {
   if (!own.length || from.structs === to.structs) return {};
   const others = plan.regions.filter(({ structs }) => structs !== null && structs !== to.structs);
   const isShown = (region) => {
-    const like = old.find(({ name }) => name === region.name);
+    const like = old.find(({ fileName }) => fileName === region.fileName);
     return like ? Boolean(scene.regions[like.id]?.visible) : true;
   };
   const looks = [...others.map(({ id }) => [id, false]), ...own.map((region) => [region.id, isShown(region)])];
@@ -46,7 +46,7 @@ function referencePatch(plan, scene, from, to, dose) {
     if (isPrescribed) return { reference: { value: to.prescription_gy * factor } };
   }
   const old = regionsOf(plan, from).find(({ id }) => id === region);
-  const like = old && from.structs !== to.structs && regionsOf(plan, to).find(({ name }) => name === old.name);
+  const like = old && from.structs !== to.structs && regionsOf(plan, to).find(({ fileName }) => fileName === old.fileName);
   return like ? { reference: { region: like.id } } : {};
 }
 
