@@ -126,6 +126,50 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
+  once('the 3-D picture turns by itself until Esc or a drag, and undo knows nothing of it; lights are for everybody', async () => {
+    const { room, page } = await open();
+    await page.getByRole('button', { name: '3-D picture', exact: true }).click();
+    const badge = page.locator('.pane-head .badge.turning');
+    const act = (name) => page.locator('.block.turning').getByRole('button', { name, exact: true }).click();
+    const seen = () => page.locator('[data-view="1"] .where').textContent();
+    const turns = async () => {
+      await act('Turn by itself');
+      await badge.waitFor();
+      const before = await seen();
+      await until(seen, (now) => now !== before, 20000);
+    };
+    await enter(page, 'Degrees a second; less than 0 the other way', 60);
+    await turns();
+    await page.keyboard.press('Escape');
+    await badge.waitFor({ state: 'detached' });
+    await turns();
+    const box = await page.locator('#picture-1').boundingBox();
+    await page.mouse.move(box.x + 80, box.y + 80);
+    await page.mouse.down();
+    assert.equal(await badge.count(), 0, 'a drag stops it');
+    await page.mouse.up();
+    assert.equal(await page.getByRole('button', { name: /^Undo/ }).isDisabled(), true, 'no step to undo');
+    await enter(page, 'Around, as a number', -60);
+    await page.locator('.block.lights').getByRole('radio', { name: 'Patient' }).click();
+    const lights = async () => (await world.scene(room)).lights;
+    const expected = { frame: 'patient', azimuth_deg: -60, elevation_deg: 34.6, intensity: 1, ambient: 0.3 };
+    assert.deepEqual(await until(lights, (now) => isDeepStrictEqual(now, expected), 20000), expected);
+    await page.getByRole('button', { name: /^Undo/ }).click();
+    await until(lights, ({ frame }) => frame === 'viewer', 20000);
+    await page.locator('.block.lights').getByRole('button', { name: 'As usual' }).click();
+    await until(lights, ({ azimuth_deg }) => azimuth_deg === 31.2, 20000);
+    await shoot(page, 'image-lights');
+    await page.context().close();
+  });
+
+  once('nothing turns by itself where the browser asks for less motion', async () => {
+    const { page } = await open({ ...sizes.wide, reducedMotion: 'reduce' });
+    await page.getByRole('button', { name: '3-D picture', exact: true }).click();
+    assert.equal(await page.getByRole('button', { name: 'Turn by itself' }).isDisabled(), true);
+    await page.getByText('This browser asks for less motion').waitFor();
+    await page.context().close();
+  });
+
   later('a second image is blended with its own window, colours and opacity', async () => {
     const { page, comes, image } = await open();
     await row(page, 'image:ct');

@@ -6,6 +6,7 @@ import { homeCamera } from '../room/home.js';
 import { isInSpace, isTurnable } from '../room/kinds.js';
 
 const keyPanPx = 24;
+const lockedAxes = { L: [1, 0, 0], P: [0, 1, 0], S: [0, 0, 1] };
 
 export class PaneCamera {
   #room;
@@ -49,7 +50,8 @@ export class PaneCamera {
   }
 
   orbit(yawDeg, pitchDeg, at) {
-    this.set(cameras.orbit(this.value, yawDeg, pitchDeg), at);
+    const axis = lockedAxes[this.#ui.turnLock.value];
+    this.set(axis ? cameras.orbitAbout(this.value, axis, yawDeg, pitchDeg) : cameras.orbit(this.value, yawDeg, pitchDeg), at);
   }
 
   roll(angleDeg, at) {
@@ -114,11 +116,12 @@ export class PaneCamera {
     return cameras.zoomSlice(camera, this.plane, factor, fromMiddle, this.#size);
   }
 
-  /** Gives this pane the camera, and those that are linked with it theirs. */
-  set(camera, at) {
+  /** Gives this pane the camera, and those that are linked with it theirs. isStep: undo takes it back. */
+  set(camera, at, isStep = true) {
     if (!this.#room.plan.value || JSON.stringify(camera) === JSON.stringify(this.value)) return;
     this.#room.patchViews([[this.#number, { camera }], ...this.#linked(camera).map(([number, other]) => [number, { camera: other }])], {
       at,
+      isStep,
     });
   }
 

@@ -8,6 +8,7 @@ const maxDistanceMm = 20000;
 const minHeightMm = 1;
 const maxHeightMm = 10000;
 const degrees = Math.PI / 180;
+const leastTurning = 0.2; // sine of the angle between an axis and the line of sight
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 /** Directions to look from, with the up direction of each. */
@@ -46,6 +47,22 @@ export function orbit(camera, yawDeg, pitchDeg) {
   const turn = (vector) => rotate(rotate(vector, right, -pitch * degrees), superior, yawDeg * degrees);
   const offset = turn(scale(forward, -distance(camera)));
   return { ...camera, position_mm: add(camera.target_mm, offset), up: unit(turn(up)) };
+}
+
+/** Turns around the target about one axis of the patient, so that what faces the viewer goes with the drag as far as it can. */
+export function orbitAbout(camera, axis, yawDeg, pitchDeg) {
+  const { right, up, forward } = axes(camera);
+  const moved = cross(axis, scale(forward, -1)); // how what faces the viewer moves
+  const [x, y] = [dot(moved, right), dot(moved, up)];
+  const size = Math.hypot(x, y);
+  const angle = size > leastTurning ? (yawDeg * x + pitchDeg * y) / size : yawDeg; // seen along the axis: by the drag's width
+  return turned(camera, axis, angle);
+}
+
+/** Turns around the target about an axis in the patient. */
+export function turned(camera, axis, angleDeg) {
+  const turn = (vector) => rotate(vector, axis, angleDeg * degrees);
+  return { ...camera, position_mm: add(camera.target_mm, turn(subtract(camera.position_mm, camera.target_mm))), up: unit(turn(camera.up)) };
 }
 
 /** Turns the picture about the line of sight. */

@@ -180,22 +180,22 @@ export class RoomState {
   }
 
   /** Changes a view: the presenter's are the room's; any other member leaves the presenter and changes their own. */
-  patchView(number, patch, { at = this.#clock.now() } = {}) {
-    if (this.canChange.value) this.#patchViews([[number, patch]], at, this.following.leave());
+  patchView(number, patch, { at = this.#clock.now(), isStep = true } = {}) {
+    if (this.canChange.value) this.#patchViews([[number, patch]], at, this.following.leave(), isStep);
   }
 
-  /** Changes several views by one act. @param {[number, object][]} changes view and patch; the first is the one acted in */
-  patchViews(changes, { at = this.#clock.now() } = {}) {
-    if (changes.length < 2) return void (changes.length && this.patchView(...changes[0], { at }));
+  /** Changes several views by one act. isStep: undo takes it back. @param {[number, object][]} changes view and patch; the first is the one acted in */
+  patchViews(changes, { at = this.#clock.now(), isStep = true } = {}) {
+    if (changes.length < 2) return void (changes.length && this.patchView(...changes[0], { at, isStep }));
     if (!this.canChange.value) return;
     const isLeaving = this.following.leave();
-    this.together(changes.map(([number]) => number).join(), () => batch(() => this.#patchViews(changes, at, isLeaving)));
+    this.together(changes.map(([number]) => number).join(), () => batch(() => this.#patchViews(changes, at, isLeaving, isStep)));
   }
 
-  #patchViews(changes, at, isLeaving) {
+  #patchViews(changes, at, isLeaving, isStep) {
     changes.forEach(([number, patch], index) => {
       const change = isLeaving ? this.following.adapted(number, patch) : patch;
-      this.recorder(number, change, this.view(number).document.value);
+      if (isStep) this.recorder(number, change, this.view(number).document.value);
       this.view(number).queue(change);
       this.#sending.plan({ view: number, at: index ? 0 : at });
     });

@@ -44,6 +44,7 @@ export class UiState {
     this.isDrawerRight = signal(false); // beside the panes, not below them
     this.filter = signal(''); // part of the names that the tree lists
     this.transferPoint = signal(0); // chosen point of the transfer function
+    this.turnLock = signal(''); // the axis that drags in 3-D turn about: L | P | S; '' as they go
     this.popover = signal(''); // name of the open popover
     this.toasts = signal([]);
     this.now = signal(clock.now()); // updated a few times a second, for ages on badges

@@ -5,6 +5,7 @@ import { test } from 'node:test';
 import { load } from '../page.mjs';
 
 const cameras = await load('room/camera.js');
+const { turnedFor } = await load('features/image/turning.js');
 const { planeOfKind, planeOfNormal } = await load('room/obliques.js');
 const { axisEnds, cubeSides } = await load('pane/orientation.js');
 const { edgeLetters, letters } = await load('pane/letters.js');
@@ -85,6 +86,33 @@ test('parallel shows at the target what perspective showed, and back', () => {
   const there = cameras.project(front, 'parallel');
   assert.ok(Math.abs(there.height_mm - 1000 * Math.tan(Math.PI / 12)) < 1e-9);
   near(cameras.project(there, 'perspective').position_mm, front.position_mm, 1e-9);
+});
+
+test('locked to an axis of the patient, a drag turns about it alone, and what is seen goes with the drag', () => {
+  // from anterior, right is L and up is S: a drag to the right by 30 degrees (yaw -30) about S brings the patient's right into view
+  const free = cameras.orbit(front, -30, 0);
+  near(cameras.orbitAbout(front, [0, 0, 1], -30, 0).position_mm, free.position_mm, 1e-9);
+  // a drag down about L (pitch 30): the eye rises by 30 degrees, as without a lock
+  near(cameras.orbitAbout(front, [1, 0, 0], 0, 30).position_mm, cameras.orbit(front, 0, 30).position_mm, 1e-9);
+  // across the axis nothing turns
+  near(cameras.orbitAbout(front, [0, 0, 1], 0, 30).position_mm, front.position_mm, 1e-9);
+  near(cameras.orbitAbout(front, [1, 0, 0], 30, 0).position_mm, front.position_mm, 1e-9);
+  // along the line of sight the picture rolls, and the eye stays
+  const rolled = cameras.orbitAbout(front, [0, 1, 0], 30, 0);
+  near(rolled.position_mm, front.position_mm, 1e-9);
+  near(rolled.up, [Math.sin(Math.PI / 6), 0, Math.cos(Math.PI / 6)], 1e-9);
+  // over a pole, where a free drag ends
+  const over = cameras.orbitAbout(front, [1, 0, 0], 0, 120);
+  near(over.position_mm, [0, 250, 500 * Math.sin((120 * Math.PI) / 180)], 1e-9);
+});
+
+test('a step of turning by itself is speed times time, and never a jump', () => {
+  const angle = ({ position_mm: [x, y] }) => (Math.atan2(x, -y) * 180) / Math.PI;
+  assert.ok(Math.abs(angle(turnedFor(front, 'patient', 20, 0.1)) - 2) < 1e-9, 'towards the left of the patient');
+  assert.ok(Math.abs(angle(turnedFor(front, 'patient', -20, 60)) + 5) < 1e-9, 'after a wait as after a quarter of a second');
+  const tilted = cameras.orbit(front, 0, 40);
+  const about = cameras.axes(tilted).up;
+  near(cameras.axes(turnedFor(tilted, 'picture', 30, 0.2)).up, about, 1e-9);
 });
 
 test('from superior, anterior is up', () => {

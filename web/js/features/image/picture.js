@@ -7,6 +7,7 @@ import { numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { active3d } from '../../pane/pane_layouts.js';
 import { lightsBlock } from './lights.js';
+import { turningBlock } from './turning.js';
 import { say } from './later_words.js';
 
 const sides = [
@@ -87,6 +88,6 @@ export function pictureBlock(world, isDisabled, change) {
         ([from, name, about]) => html`<button ?disabled=${isDisabled} title=${about}
         @click=${(event) => cameras.lookFrom(from, event.timeStamp)}>${name}</button>`,
       )}</div></section>
-    ${lightsBlock(world, isDisabled, change)}
+    ${turningBlock(world, isDisabled)}${lightsBlock(world, isDisabled, change)}
     ${image ? slicesBlock(scene, image, isDisabled, change) : nothing}`;
 }
