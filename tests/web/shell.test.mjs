@@ -2,7 +2,10 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
+import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { load } from './unit/page.mjs';
+
+const { toPicture } = await load('parts/vec.js');
 
 describe('around the panes', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -140,6 +143,77 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.setViewportSize({ width: 820, height: 1180 });
     await page.waitForFunction(() => document.querySelector('.room').dataset.size === 'tablet');
     assert.equal(await page.getByRole('separator').count(), 0);
+    await page.context().close();
+  });
+
+  it('the page is drawn larger, and what is pointed at stays under the pointer; it is kept', async () => {
+    const page = await open({ viewport: { width: 2880, height: 1620 } });
+    const axial = page.locator('#picture-2');
+    const before = await axial.boundingBox();
+    await page.keyboard.press('?');
+    await page.getByRole('radio', { name: '200 %' }).click();
+    await page.keyboard.press('Escape');
+    await page.waitForFunction(
+      () => document.querySelector('.room').dataset.size === 'wide' && document.documentElement.hasAttribute('data-scaled'),
+    );
+    const banner = await page.locator('.banner').boundingBox();
+    assert.deepEqual([banner.width, banner.height], [2880, 104], 'twice 52, and as wide as the window');
+    await page.waitForFunction(() => {
+      const box = document.querySelector('#picture-2').getBoundingClientRect();
+      return Math.abs(globalThis.beamroom.stats().headers[2].full_px[0] - box.width) <= 2;
+    });
+    await full(page, 2);
+    const now = await axial.boundingBox();
+    assert.ok(now.width < before.width, 'panels have taken their part');
+    await axial.click({ position: { x: now.width * 0.6, y: now.height * 0.45 } });
+    const room = new URL(page.url()).pathname.split('/').at(-1);
+    const clicked = async () => {
+      const { slices } = (await world.scene(room)).image;
+      const point = [slices.sagittal, slices.coronal, slices.axial].map(({ position_mm: mm }) => mm);
+      return toPicture((await header(page, 2)).clip_from_lps_mm, point);
+    };
+    for (let n = 0; n < 100 && Math.abs((await clicked())[0] - 0.6) > 0.02; n++) await page.waitForTimeout(30);
+    const [x, y] = await clicked();
+    assert.ok(Math.abs(x - 0.6) < 0.02 && Math.abs(y - 0.45) < 0.02, `the crosshair is where the click was: ${x} ${y}`);
+    await shoot(page, 'page-200');
+    await page.reload();
+    await full(page);
+    assert.equal((await page.locator('.banner').boundingBox()).height, 104);
+    await page.context().close();
+  });
+
+  it('light colours: the pictures stay dark, contrast is enough, and the system is followed', async () => {
+    const page = await open({ colorScheme: 'light' });
+    const ground = (selector) =>
+      page
+        .locator(selector)
+        .first()
+        .evaluate((element) => getComputedStyle(element).backgroundColor);
+    const [tree, pane] = [await ground('.room > .tree'), await ground('.pane')];
+    await page.keyboard.press('?');
+    await page.getByRole('radio', { name: 'Light' }).click();
+    assert.deepEqual(await axe(page), []);
+    await page.keyboard.press('Escape');
+    assert.notEqual(await ground('.room > .tree'), tree);
+    assert.equal(await ground('.pane'), pane);
+    await page.keyboard.press('d');
+    await page.getByRole('treeitem', { name: /brain/i }).first().click();
+    await full(page);
+    await shoot(page, 'page-light');
+    assert.deepEqual(await axe(page), []);
+    await page.keyboard.press('v');
+    await page.locator('.chart-plot').first().waitFor();
+    await shoot(page, 'page-light-plots');
+    assert.deepEqual(await axe(page), []);
+    await page.keyboard.press('?');
+    await page.getByRole('radio', { name: 'As the system' }).click();
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.colours), 'light');
+    await page.goto(world.daemon.url);
+    await page.getByText('Modified Snyder').first().waitFor();
+    await shoot(page, 'page-light-start');
+    assert.deepEqual(await axe(page), []);
+    await page.emulateMedia({ colorScheme: 'dark' });
+    await page.waitForFunction(() => document.documentElement.dataset.colours === 'dark');
     await page.context().close();
   });
 

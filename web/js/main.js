@@ -8,6 +8,7 @@ import { Hooks } from './hooks.js';
 import { roomPage } from './shell/room_page.js';
 import { OwnName } from './room/own_name.js';
 import { styled } from './parts/lazy.js';
+import { keepLook } from './parts/page_look.js';
 import { Redraw } from './parts/redraw.js';
 import { Decoder } from './pane/decoder.js';
 import { keepTextVisible } from './parts/visible_text.js';
@@ -15,6 +16,7 @@ import { language } from './languages/index.js';
 
 document.documentElement.lang = language;
 keepTextVisible(document.documentElement);
+keepLook(storage());
 
 /** The browser's storage between visits; null where it keeps nothing. */
 function storage() {

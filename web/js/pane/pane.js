@@ -22,6 +22,7 @@ import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
 import { readOut, spoken } from './read_out.js';
 import { say } from './words.js';
+import { boxOf, pixelRatio } from '../parts/page_look.js';
 
 const resizeMs = 120;
 const maxSide = 4096;
@@ -117,7 +118,7 @@ export class Pane {
 
   /** Opens, resizes or closes the server's view when the pane is shown, resized or hidden. */
   #measure(body) {
-    const { width, height } = body.getBoundingClientRect();
+    const { width, height } = boxOf(body);
     this.#size.value = [width, height];
     clearTimeout(this.#resizeTimer);
     if (!this.#view.isOpen.value) this.#ask();
@@ -127,7 +128,7 @@ export class Pane {
   #ask() {
     const [width, height] = this.#size.value;
     if (width < 2 || height < 2) return void this.#room.hideView(this.#view.number);
-    const ratio = Math.min(globalThis.devicePixelRatio || 1, 2);
+    const ratio = pixelRatio();
     const pixels = (side) => Math.min(Math.max(Math.round(side * ratio), 16), maxSide);
     this.#room.showView(this.#view.number, [pixels(width), pixels(height)]);
   }

@@ -1,4 +1,5 @@
 // Reads mouse, pen and touch on a picture and reports drags, taps, long presses, wheel steps, pinches and the pointer at rest.
+import { boxOf, placeOf } from '../parts/page_look.js';
 
 const slopPx = 4; // a press that moves less is a tap
 // A tap is reported once it is known not to be the first of two: what a double tap does must not move anything before.
@@ -60,8 +61,9 @@ export class PointerReader {
   }
 
   #point(event) {
-    const box = this.#element.getBoundingClientRect();
-    return { x: event.clientX - box.left, y: event.clientY - box.top };
+    const box = boxOf(this.#element);
+    const { x, y } = placeOf(event);
+    return { x: x - box.left, y: y - box.top };
   }
 
   #down(event) {

@@ -5,6 +5,7 @@ import { cardOf, placeBeside } from '../parts/place.js';
 import { imageValue, number, position, significant, unitText, volume } from '../parts/format.js';
 import { variables } from '../parts/mount.js';
 import { say } from './words.js';
+import { boxOf } from '../parts/page_look.js';
 
 const mouseGap = 16;
 const touchGap = 40; // a finger covers what is nearer
@@ -16,7 +17,7 @@ export function readOut({ room, pointed }, host) {
   const plan = room.plan.peek();
   const scene = room.scene.peek();
   if (!shown || !plan || !scene) return nothing;
-  const picture = host.parentElement.getBoundingClientRect();
+  const picture = boxOf(host.parentElement);
   const { name, color, lines, value, width, height } = cardOf(words(shown.facts, plan, scene), picture.width, shown.isHeld);
   const { x, y } = placeBeside(
     shown,
@@ -79,7 +80,7 @@ function takenIn(picture, { left, top }) {
     ...picture.parentElement.querySelectorAll('.legend'),
   ];
   return marks.map((mark) => {
-    const box = mark.getBoundingClientRect();
+    const box = boxOf(mark);
     return { x: box.left - left, y: box.top - top, width: box.width, height: box.height };
   });
 }

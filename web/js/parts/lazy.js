@@ -1,6 +1,7 @@
 // Parts of the page that are loaded when they are first drawn, so that they do not weigh on a first visit.
 import { html } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
+import { scaleConditions } from './page_look.js';
 import { say } from './words.js';
 
 /** @template T */
@@ -84,4 +85,5 @@ export async function styled(sheet) {
     });
     if (!known) document.head.append(link);
   });
+  scaleConditions(link.sheet);
 }

@@ -17,6 +17,7 @@ import { soon } from '../net/soon.js';
 import { Answer } from '../parts/answer.js';
 import { later } from '../parts/lazy.js';
 import { mount } from '../parts/mount.js';
+import { pageFactor } from '../parts/page_look.js';
 import { Pane } from '../pane/pane.js';
 import { giveOblique } from '../pane/pane_kind.js';
 import { listenKeys } from './page_keys.js';
@@ -237,7 +238,8 @@ function adapt(ui) {
   const coarse = matchMedia('(pointer: coarse)');
   const set = () => {
     const before = ui.window.peek();
-    const { clientWidth: width, clientHeight: height } = document.documentElement; // innerWidth is larger where a telephone shows more than the page
+    const { clientWidth, clientHeight } = document.documentElement; // innerWidth is larger where a telephone shows more than the page
+    const [width, height] = [clientWidth / pageFactor(), clientHeight / pageFactor()];
     ui.window.value = { width, height, isCoarse: coarse.matches };
     if (before.width >= inspectorFrom !== width >= inspectorFrom) ui.isInspectorOpen.value = width >= inspectorFrom;
   };

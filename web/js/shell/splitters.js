@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { mount } from '../parts/mount.js';
 import { say } from './later_words.js';
+import { placeOf } from '../parts/page_look.js';
 
 const stepPx = 16;
 const stepShare = 0.02;
@@ -13,7 +14,7 @@ const names = {
   rows: say.splitRows,
 };
 const towards = { inspector: -1, drawer: -1 }; // these grow to the left and upwards
-const placeOf = (name) => (['columns', 'rows'].includes(name) ? '.panes' : 'main');
+const hostOf = (name) => (['columns', 'rows'].includes(name) ? '.panes' : 'main');
 
 /** @param {HTMLElement} host of the page @returns {() => void} takes them away */
 export function placeSplitters(host, ui) {
@@ -22,7 +23,7 @@ export function placeSplitters(host, ui) {
     host.querySelector(place).append(element);
     const stop = mount(
       element,
-      () => html`${ui.splitters.value.filter(({ name }) => placeOf(name) === place).map((one) => splitter(host, ui, one))}`,
+      () => html`${ui.splitters.value.filter(({ name }) => hostOf(name) === place).map((one) => splitter(host, ui, one))}`,
     );
     return () => {
       stop();
@@ -55,7 +56,7 @@ function splitter(host, ui, one) {
     const { currentTarget, pointerId } = event;
     const panes = host.querySelector('.panes');
     const whole = isShare(one) ? (isAcross ? panes.clientHeight : panes.clientWidth) : 1;
-    const along = ({ clientX, clientY }) => (isAcross ? clientY : clientX);
+    const along = (at) => placeOf(at)[isAcross ? 'y' : 'x'];
     const [from, start] = [along(event), now().value];
     currentTarget.setPointerCapture(pointerId);
     const abort = new AbortController();

@@ -20,7 +20,7 @@ export const say = sentences('shell', {
   keysTip: 'Help: keys, mouse, size and colours of the page',
   help: 'Help',
   dismiss: 'Dismiss',
-  keysAndMouse: 'Keys and mouse',
+  keysAndMouse: 'Help',
   close: 'Close',
   probe: 'Probe',
   selection: 'Selection',

@@ -12,6 +12,7 @@ import { coordinates } from './beam_words.js';
 import { variables } from '../../parts/mount.js';
 import { addTool } from '../../pane/pane_tools.js';
 import { say } from './later_words.js';
+import { boxOf } from '../../parts/page_look.js';
 
 const words = { target: say.targetOfBeam, entry: say.entryOfBeam };
 const inPlaneMm = 2; // farther from the slice a point is drawn faint
@@ -73,7 +74,7 @@ class PaneMove {
 
   /** In the window: the pane may move under the pointer when the bar of the draft comes. */
   #placeOf(x, y) {
-    const { left, top } = document.querySelector(`#picture-${this.#pane.view.number}`).getBoundingClientRect();
+    const { left, top } = boxOf(document.querySelector(`#picture-${this.#pane.view.number}`));
     return [x + left, y + top];
   }
 

@@ -6,6 +6,7 @@ import { number } from '../../parts/format.js';
 import { variables } from '../../parts/mount.js';
 import { sliderKey } from '../../parts/slider_keys.js';
 import { say } from './pane_words.js';
+import { boxOf, placeOf } from '../../parts/page_look.js';
 
 const numbersMm = [20, 40, 80];
 const nearMm = [5, 10]; // where those lie outside
@@ -89,8 +90,9 @@ export function ringHandle(place, isOff, set) {
   const onMove = (event) => {
     event.stopPropagation(); // no card at the pointer beside the handle
     if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
-    const { left, top } = event.currentTarget.closest('.picture').getBoundingClientRect();
-    const mm = (2 * Math.hypot(event.clientX - left - frame.middle[0], event.clientY - top - frame.middle[1])) / frame.pxPerMm;
+    const { left, top } = boxOf(event.currentTarget.closest('.picture'));
+    const { x, y } = placeOf(event);
+    const mm = (2 * Math.hypot(x - left - frame.middle[0], y - top - frame.middle[1])) / frame.pxPerMm;
     set(Math.min(Math.max(tidy(mm), 1), range.high), event.timeStamp);
   };
   const onDown = (event) => {

@@ -1,6 +1,7 @@
 // Where the labels of isodose lines stand in slice panes: asked of the server for each picture at rest, shown while that picture is.
 import { isInSpace } from '../../room/kinds.js';
 import { Answer } from '../../parts/answer.js';
+import { pixelRatio } from '../../parts/page_look.js';
 
 export const labelPx = 10.5; // CSS px: size of the font
 
@@ -48,7 +49,7 @@ export class DoseLabels {
       return isShown ? pictureOf(header) : '';
     };
     const ask = async () => {
-      const textPx = labelPx * Math.min(globalThis.devicePixelRatio || 1, 2); // as the size of the picture
+      const textPx = labelPx * pixelRatio(); // as the size of the picture
       const { levels } = await this.#api.isolines(room.planId.peek(), room.id, view.document.peek(), textPx);
       return levels;
     };

@@ -2,6 +2,7 @@
 import { svg } from '../../../lib/lit-html.js';
 import { variables } from '../../parts/mount.js';
 import { legendPlace } from './legend_place.js';
+import { boxOf } from '../../parts/page_look.js';
 
 const [narrowest, lowest] = [320, 240]; // px: smaller panes have no labels
 const leastLuminance = 0.3; // of the letters, on their dark halo
@@ -75,9 +76,9 @@ function extent(width, height, angle) {
 
 /** Boxes of marks, in CSS px of the picture. */
 function boxesIn(host, names) {
-  const picture = host.querySelector('.picture').getBoundingClientRect();
+  const picture = boxOf(host.querySelector('.picture'));
   return [...host.querySelectorAll(names)].map((mark) => {
-    const { left, right, top, bottom } = mark.getBoundingClientRect();
+    const { left, right, top, bottom } = boxOf(mark);
     return { left: left - picture.left, right: right - picture.left, top: top - picture.top, bottom: bottom - picture.top };
   });
 }

@@ -26,6 +26,7 @@ import { pickingLayer } from './pane_picking.js';
 import { number } from '../../parts/format.js';
 import { sliderKey } from '../../parts/slider_keys.js';
 import { say } from './words.js';
+import { boxOf, placeOf } from '../../parts/page_look.js';
 
 const namesFrom = 240; // px of width
 const [turnPart, degrees] = [0.93, Math.PI / 180];
@@ -250,12 +251,13 @@ export class PaneLines {
   }
 
   /** The patient point under the pointer, on the slice shown. */
-  #point({ clientX, clientY, currentTarget }, scene) {
-    const { left, top } = currentTarget.closest('.picture').getBoundingClientRect();
+  #point(event, scene) {
+    const { left, top } = boxOf(event.currentTarget.closest('.picture'));
+    const { x, y } = placeOf(event);
     const { box } = this.#place();
     return fromPicture(
       this.#view.painted.value.clip_from_lps_mm,
-      [(clientX - left - box.x) / box.width, (clientY - top - box.y) / box.height],
+      [(x - left - box.x) / box.width, (y - top - box.y) / box.height],
       this.#slice(scene).origin,
     );
   }

@@ -3,6 +3,7 @@ import { html, nothing, svg } from '../../../lib/lit-html.js';
 import { planeOfView, throughLine, throughPoints } from '../../room/obliques.js';
 import { fromPicture, toPicture } from '../../parts/vec.js';
 import { setOblique } from './oblique_rows.js';
+import { boxOf, placeOf } from '../../parts/page_look.js';
 
 const shortestPx = 12; // a line that is shorter was a slip
 
@@ -27,9 +28,10 @@ export function pickingLayer(world, view, box) {
   if (!picking) return nothing;
   const matrix = view.painted.value.clip_from_lps_mm;
   const slice = () => planeOfView(room.scene.value, view.document.value, room.plan.value);
-  const pointOf = ({ clientX, clientY, currentTarget }) => {
-    const { left, top } = currentTarget.getBoundingClientRect();
-    return fromPicture(matrix, [(clientX - left - box.x) / box.width, (clientY - top - box.y) / box.height], slice().origin);
+  const pointOf = (event) => {
+    const { left, top } = boxOf(event.currentTarget);
+    const { x, y } = placeOf(event);
+    return fromPicture(matrix, [(x - left - box.x) / box.width, (y - top - box.y) / box.height], slice().origin);
   };
   const pixelOf = (point) => {
     const [x, y] = toPicture(matrix, point);

@@ -3,6 +3,7 @@ import { effect, untracked } from '../../../lib/signals-core.js';
 import { Pointing } from './pointing.js';
 import { isInSpace } from '../../room/kinds.js';
 import { PanePick } from '../../pane/pane_pick.js';
+import { boxOf, placeOf } from '../../parts/page_look.js';
 
 /** @returns {() => void} stops */
 export function startPointing({ room, api, clock, panes }) {
@@ -29,8 +30,9 @@ export function startPointing({ room, api, clock, panes }) {
     const number = index + 1;
     const picture = pane.host.querySelector('.picture');
     const move = (event) => {
-      const { left, top } = picture.getBoundingClientRect();
-      last = { number, x: event.clientX - left, y: event.clientY - top };
+      const { left, top } = boxOf(picture);
+      const { x, y } = placeOf(event);
+      last = { number, x: x - left, y: y - top };
       if (event.pointerType !== 'touch' && event.buttons && isInSpace(room.view(number).kind)) return; // the camera turns
       send(last);
     };

@@ -12,6 +12,7 @@ import { overlay } from '../../pane/overlay.js';
 import { Painter } from '../../pane/painter.js';
 import { icon } from '../../parts/icons.js';
 import { mount, variables } from '../../parts/mount.js';
+import { boxOf, pixelRatio, placeOf } from '../../parts/page_look.js';
 
 const number = 9; // of frames and messages
 const [widest, narrowest] = [260, 140]; // px
@@ -22,11 +23,11 @@ const nameOf = ({ kind, number: ofKind = 1 }) => views.find((view) => view.kind 
 
 /** The visible pane in a corner of the panes: its box relative to all of them. */
 function paneAt(host, corner) {
-  const all = host.getBoundingClientRect();
+  const all = boxOf(host);
   const [isBottom, isRight] = [corner.startsWith('bottom'), corner.endsWith('right')];
   const far = ({ left, right, top, bottom }) =>
     Math.hypot(isRight ? all.right - right : left - all.left, isBottom ? all.bottom - bottom : top - all.top);
-  const panes = [...host.querySelectorAll('.pane:not([hidden])')].map((pane) => ({ pane, box: pane.getBoundingClientRect() }));
+  const panes = [...host.querySelectorAll('.pane:not([hidden])')].map((pane) => ({ pane, box: boxOf(pane) }));
   return panes.sort((a, b) => far(a.box) - far(b.box))[0] ?? null;
 }
 
@@ -43,8 +44,8 @@ const headOf = (host) => Math.max(28, parseFloat(getComputedStyle(host).getPrope
 function place(host, corner, ratio) {
   const found = paneAt(host, corner);
   if (!found) return null;
-  const picture = found.pane.querySelector('.picture').getBoundingClientRect();
-  const all = host.getBoundingClientRect();
+  const picture = boxOf(found.pane.querySelector('.picture'));
+  const all = boxOf(host);
   const room = {
     width: picture.width - 2 * edge.side,
     height: Math.min(picture.height - edge.top - edge.bottom, mostOfPane * picture.height) - headOf(host),
@@ -158,7 +159,7 @@ class Small {
     void this.#nWelcomes.value;
     const { link } = this.#world.room;
     const at = this.#isShown && !this.#world.watching.isFolded.value ? this.place.value : null;
-    const ratio = Math.min(globalThis.devicePixelRatio || 1, 2);
+    const ratio = pixelRatio();
     const size = at && !at.isTight ? [at.width, at.height].map((side) => Math.max(16, Math.round(side * ratio))) : null;
     if (link.value.state !== 'open' || String(size) === String(this.#told || null)) return;
     if (this.#world.connection.send({ type: 'watch', size_px: size })) this.#told = size ?? false;
@@ -270,7 +271,7 @@ class Small {
     if (event.button !== 0 || event.target.closest('button')) return;
     const head = event.currentTarget;
     const card = head.parentElement;
-    const [fromX, fromY] = [event.clientX, event.clientY];
+    const from = placeOf(event);
     const abort = new AbortController();
     const on = (type, act) => head.addEventListener(type, act, { signal: abort.signal });
     const end = () => {
@@ -278,11 +279,12 @@ class Small {
       card.style.removeProperty('translate');
     };
     head.setPointerCapture(event.pointerId);
-    on('pointermove', ({ clientX, clientY }) => {
-      card.style.setProperty('translate', `${clientX - fromX}px ${clientY - fromY}px`);
+    on('pointermove', (move) => {
+      const { x, y } = placeOf(move);
+      card.style.setProperty('translate', `${x - from.x}px ${y - from.y}px`);
     });
     on('pointerup', () => {
-      const [box, all] = [card.getBoundingClientRect(), this.#panes.getBoundingClientRect()];
+      const [box, all] = [boxOf(card), boxOf(this.#panes)];
       end();
       const vertical = box.top + box.bottom > all.top + all.bottom ? 'bottom' : 'top';
       this.#world.watching.corner.value = `${vertical}-${box.left + box.right > all.left + all.right ? 'right' : 'left'}`;

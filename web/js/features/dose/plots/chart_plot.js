@@ -1,4 +1,5 @@
 // A uPlot in an element of a template: html`<div ${plot(spec)}></div>`. It has the size of its element, and goes with it.
+import { pageFactor } from '../../../parts/page_look.js';
 import { nothing } from '../../../../lib/lit-html.js';
 import { Directive, directive } from '../../../../lib/directive.js';
 import UPlot from '../../../../lib/uplot.js';
@@ -74,7 +75,13 @@ class PlotDirective extends Directive {
         height,
         legend: { show: false },
         padding: [8, 12, 0, 0],
-        cursor: { y: false, drag: { x: false, y: false, setScale: false }, points: { show: false }, bind: { dblclick: () => null } },
+        cursor: {
+          move: (_, left, top) => [left / pageFactor(), top / pageFactor()],
+          y: false,
+          drag: { x: false, y: false, setScale: false },
+          points: { show: false },
+          bind: { dblclick: () => null },
+        },
         hooks: { drawAxes: [layer('below')], draw: [layer('above')], setCursor: [(chart) => this.#spec.pointed?.(placeOf(chart))] },
         axes: axes.map((axis) => ({
           stroke: axisInk,
