@@ -168,9 +168,20 @@ static bool is_sign_in(const char *path)
     return false;
 }
 
+/* /meetings/ID, and its minutes. */
+static bool is_meeting(const char *path)
+{
+    static const char minutes[] = "/minutes";
+    const size_t n = strlen(path), n_end = sizeof minutes - 1;
+    char head[128];
+    const bool is_minutes = n > n_end && n < sizeof head && strcmp(path + n - n_end, minutes) == 0;
+    (void)snprintf(head, sizeof head, "%.*s", is_minutes ? (int)(n - n_end) : 0, path);
+    return is_id_behind(is_minutes ? head : path, "/meetings/");
+}
+
 const struct file *files_find(const struct files *files, const char *path)
 {
-    if (strcmp(path, "/") == 0 || is_sign_in(path) || is_id_behind(path, "/rooms/"))
+    if (strcmp(path, "/") == 0 || is_sign_in(path) || is_id_behind(path, "/rooms/") || is_meeting(path))
         path = "/index.html";
     else if (is_id_behind(path, "/display/"))
         path = "/display.html";

@@ -162,6 +162,8 @@ static void look_at_plan(const struct net *net, struct meeting_case *one)
         json_put_text(one->patient, sizeof one->patient, patient, "masked");
         json_put_text(one->approval, sizeof one->approval, treatment, "approval");
     }
+    if (plan.is_phantom)
+        mem_put_text(one->patient, sizeof one->patient, "PHANTOM");
     if (plan.document || !one->label[0])
         mem_put_text(one->label, sizeof one->label, label && label[0] ? label : plan.name);
 }

@@ -125,13 +125,13 @@ void meeting_moves_tell(struct net *net, const struct meeting *meeting, const st
                                     .of = (int64_t)meeting->n_cases,
                                     .n_now = now ? (int64_t)meeting_place(meeting, now) + 1 : 0,
                                     .open = true,
-                                    .waits = present.waits_outside,
                                     .over = meeting->ended_ms != 0 };
     (void)snprintf(told.meeting, sizeof told.meeting, "%s", meeting->id);
     (void)snprintf(told.name, sizeof told.name, "%s", meeting->name);
     (void)snprintf(told.here, sizeof told.here, "%s", here->id);
     if (now)
         told.open = meeting_moves_may(net, meeting, now, identity_at(connection), &present, &role);
+    told.waits = present.waits_outside && now && !told.open;
     if (now && told.open)
         (void)snprintf(told.now, sizeof told.now, "%s", now->id);
     told.may_advance =

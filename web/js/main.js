@@ -73,9 +73,17 @@ function go(path, isInstead = false) {
   history[isInstead ? 'replaceState' : 'pushState'](null, '', path);
   void route();
 }
-/** Goes to a room. @param {string} plan its plan, '' if not known @param {string} link token of the link that lets in */
-function enter(room, plan = '', link = '', isInstead = false) {
-  remember(room, { ...(plan && { plan }), ...(link && { link, isNew: true }) });
+/** Goes to a room. @param {string} plan its plan, '' if not known @param {string} link token of the link that lets in
+ *  @param {object} [seat] {member, secret, from}: a seat that was made there for who comes from the room `from` */
+function enter(room, plan = '', link = '', isInstead = false, { from, ...seat } = {}) {
+  const { isGuest, user: of } = from ? remembered(from) : {};
+  remember(room, {
+    ...(plan && { plan }),
+    ...(link && { link, isNew: true }),
+    ...seat,
+    ...(isGuest && { isGuest }),
+    ...(of && { user: of }),
+  });
   go(roomPath(room), isInstead);
 }
 const ownName = new OwnName(storage());
@@ -148,10 +156,10 @@ let shown = null; // "PLACE ID"
 
 async function route() {
   const { place, id, plan, link } = placeOf(location);
-  if (place === 'rooms' && (plan || link || location.hash.startsWith('#/'))) {
+  if ((place === 'rooms' && (plan || link || location.hash.startsWith('#/'))) || (place === 'meetings' && link)) {
     // the token leaves the address and the history before anything else happens
     remember(id, { ...(plan && { plan }), ...(link && { link, isNew: true }) });
-    history.replaceState(null, '', roomPath(id));
+    history.replaceState(null, '', place === 'rooms' ? roomPath(id) : location.pathname);
   }
   if (shown === `${place} ${id}` && !link) return; // another fragment: the skip link's target, not a page
   shown = `${place} ${id}`;
@@ -183,6 +191,9 @@ async function route() {
   } else if (place === 'signin') {
     const { signInPage } = await import('./features/session/sign_in_page.js');
     if (n === nRoutes) leave = signInPage(host, id, { api, ownName, remembered, remember });
+  } else if (place === 'meetings') {
+    const { meetingPage } = await import('./features/meeting/meeting_page.js');
+    if (n === nRoutes) leave = meetingPage(host, id, { api, clock, link: remembered(id).link, isMinutes: plan === 'minutes', enter });
   } else if (place === 'p') {
     const { permalinkPage } = await import('./features/bookmarks/permalink.js');
     if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => enter(room, of, '', true) }); // going back does not make another room

@@ -408,7 +408,7 @@ struct member *member_hello(struct room *room, void *connection, const struct me
         return NULL;
     }
     name_member(room, member, who, hello, &in);
-    member->is_expected = member->waits_outside = false;
+    member->is_expected = false;
     member->connection = connection;
     (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
     audit_entered(room, member, as);

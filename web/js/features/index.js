@@ -7,6 +7,7 @@ import { dose } from './dose/feature.js';
 import { fits } from './fits/feature.js';
 import { image } from './image/feature.js';
 import { measures } from './measures/feature.js';
+import { meeting } from './meeting/feature.js';
 import { notes } from './notes/feature.js';
 import { patient } from './patient/feature.js';
 import { planes } from './planes/feature.js';
@@ -75,6 +76,7 @@ export const features = [
   bookmarks,
   notes,
   record,
+  meeting,
   pointers,
   report,
 ];

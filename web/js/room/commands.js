@@ -21,6 +21,7 @@ export const commands = {
   pin: ['Q'],
   point: ['P'],
   askToLook: ['Shift+P'],
+  nextCase: ['Shift+N'],
   note: ['N'],
   follow: ['F'],
   undo: ['Ctrl+Z'],

@@ -61,6 +61,7 @@ export const commandWords = {
   pin: say.qIs,
   point: say.pIs,
   askToLook: say.askIs,
+  nextCase: say.nextCaseIs,
   note: say.nIs,
   follow: say.fIs,
   undo: say.undoIs,

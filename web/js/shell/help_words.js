@@ -87,6 +87,7 @@ export const say = sentences('shell.help', {
   qIs: 'Pin the values at the crosshair',
   pIs: 'Point: the others see where',
   askIs: 'Ask the others to look here',
+  nextCaseIs: 'Next case of the meeting: who follows goes along',
   nIs: 'Write a note at the crosshair',
   fIs: 'Return to the presenter, or look for yourself',
   undoIs: 'Undo your last change of scene or camera',

@@ -1,0 +1,185 @@
+// A meeting of three cases in browsers: the presenter goes on, who follows goes along, who looks on their own is asked, who may not see the second case waits
+// outside and comes back, the minutes tell of all of it. Pictures are grey (--stub): what is looked at is whose they are. Screenshots stay in
+// build/test-artifacts/.
+import assert from 'node:assert/strict';
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { call, demo, until } from '../api/daemon.mjs';
+import { axe } from './axe.mjs';
+import { later, missing, shoot, startWorld } from './browser.mjs';
+import { says } from './people.mjs';
+
+const password = 'correct horse';
+const names = ['First plan', 'Second plan', 'Third plan'];
+
+describe('a meeting of three cases', { skip: missing && `${missing} is not there` }, () => {
+  let world, folder, meeting, cases;
+  const who = {};
+  const pages = {};
+  const api = (path, user, method = 'GET', body) => call(`${world.daemon.url}/api/v1${path}`, method, body, { Cookie: who[user] });
+  const agenda = async () => (await api(`/meetings/${meeting}`, 'pat')).json;
+
+  /** A browser in which this user has signed in. */
+  async function browse(user, address, options) {
+    const page = await world.newPage('healthz', options); // not yet a page of ours
+    const [name, value] = who[user].split('=');
+    await page.context().addCookies([{ name, value, url: world.daemon.url }]);
+    await page.goto(`${world.daemon.url}/${address}`);
+    return page;
+  }
+  const title = (page) => page.locator('.banner').textContent();
+  const chip = (page) => page.locator('.meeting-chip');
+  const isIn = (page, n) =>
+    chip(page)
+      .locator('b', { hasText: `${n}/3` })
+      .waitFor();
+  /** What must never be seen: something of the page before, below the name of the new plan. */
+  const mark = (page) =>
+    page.evaluate(() => document.querySelectorAll('.pane canvas, .pane').forEach((element) => element.setAttribute('data-before', '')));
+  const nBefore = (page) => page.evaluate(() => document.querySelectorAll('[data-before]').length);
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-cases-'));
+    for (const [index, name] of ['a/one', 'b/two', 'a/three'].entries()) {
+      mkdirSync(join(folder, name), { recursive: true });
+      cpSync(join(demo, 'phantom'), join(folder, name), { recursive: true });
+      const path = join(folder, name, 'plan.json');
+      writeFileSync(path, JSON.stringify({ ...JSON.parse(readFileSync(path, 'utf8')), name: names[index] }));
+    }
+    const grants = ['* pat planner', `${folder}/a rae reviewer`, '* ola reviewer', '* fay reviewer'];
+    world = await startWorld({
+      plans: [join(folder, 'a'), join(folder, 'b')],
+      args: ['--stub', '--sign-in', 'local', ...grants.flatMap((line) => ['--grant', line])],
+    });
+    const token = await until(
+      () => /signin\/first#([0-9a-f]{64})/.exec(world.daemon.log())?.[1],
+      (found) => found,
+    );
+    const url = `${world.daemon.url}/api/v1`;
+    const signIn = async (user) => {
+      const { headers } = await call(`${url}/session`, 'POST', { user, password });
+      who[user] = headers.get('set-cookie').split(';')[0];
+    };
+    await call(`${url}/session/first`, 'POST', { token, user: 'ada', name: 'Ada', password });
+    await signIn('ada');
+    for (const [user, name] of Object.entries({ pat: 'Pat', rae: 'Rae', ola: 'Ola', fay: 'Fay' })) {
+      await api('/users', 'ada', 'POST', { user, name, password, groups: '' });
+      await signIn(user);
+    }
+    const { plans } = (
+      await until(
+        () => api('/plans', 'pat'),
+        ({ json }) => json.plans.length >= 4,
+      )
+    ).json;
+    const made = await api('/meetings', 'pat', 'POST', {
+      name: 'Tumour board',
+      cases: names.map((name) => ({ plan: plans.find((plan) => plan.name === name).id })),
+      people: ['rae', 'ola', 'fay'].map((user) => ({ who: user })),
+    });
+    assert.equal(made.status, 201, made.text);
+    [meeting, cases] = [made.json.id, made.json.cases.map(({ id }) => id)];
+  });
+  after(async () => {
+    await world?.stop();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+  });
+
+  it('the address of the meeting waits until it has begun, and then leads into its first case', async () => {
+    pages.fay = await browse('fay', `meetings/${meeting}`);
+    await pages.fay.locator('h1', { hasText: '“Tumour board” has not begun' }).waitFor();
+    assert.deepEqual(await axe(pages.fay), []);
+    assert.equal((await api(`/meetings/${meeting}/case`, 'pat', 'POST', { case: 'next', from: null })).status, 200);
+    const { room } = (await agenda()).cases[0];
+    pages.pat = await browse('pat', `rooms/${room}`);
+    await isIn(pages.pat, 1);
+    await says(pages.pat, /Presenting/);
+    [pages.rae, pages.ola] = await Promise.all(['rae', 'ola'].map((user) => browse(user, `rooms/${room}`)));
+    await Promise.all(['fay', 'rae', 'ola'].map((user) => isIn(pages[user], 1)));
+    await Promise.all(['fay', 'rae', 'ola'].map((user) => says(pages[user], /Following Pat/)));
+    assert.match(await title(pages.fay), /First plan/);
+  });
+
+  it('the next case takes along who follows, behind a card with the new plan alone; who looks on their own is asked; who may not see it waits', async () => {
+    await pages.ola.locator('#picture-1').focus();
+    await pages.ola.keyboard.press('ArrowLeft');
+    await says(pages.ola, /On my own/);
+    for (const page of [pages.pat, pages.fay]) await mark(page);
+    await pages.pat.keyboard.press('Shift+N');
+    const card = pages.fay.locator('.case-card');
+    await card.waitFor();
+    assert.match((await card.textContent()).replace(/\s+/g, ' '), /Case 2 of 3.*PHANTOM.*Second plan.*Pat had the meeting go on/);
+    assert.equal(await pages.fay.evaluate(() => getComputedStyle(document.querySelector('.case-cover')).position), 'fixed');
+    await shoot(pages.fay, 'case-card');
+    await pages.rae.locator('h1', { hasText: 'Case 2 is not open to you' }).waitFor();
+    assert.doesNotMatch(await pages.rae.locator('body').textContent(), /Second plan/);
+    assert.deepEqual(await axe(pages.rae), []);
+    await shoot(pages.rae, 'case-closed');
+    const line = pages.ola.locator('.case-line');
+    await line.locator('button', { hasText: /^Go along \(\d+ s\)$/ }).waitFor();
+    assert.match(await line.textContent(), /The meeting went on to case 2/);
+    assert.match(await title(pages.ola), /First plan/, 'nothing changes for who looks on their own');
+    assert.deepEqual(await axe(pages.ola), []);
+    await shoot(pages.ola, 'case-asked');
+    for (const page of [pages.pat, pages.fay]) {
+      await isIn(page, 2);
+      await page.locator('.banner', { hasText: 'Second plan' }).waitFor();
+      assert.equal(await nBefore(page), 0, 'no picture of the case before');
+      await page.locator('.case-card').waitFor({ state: 'detached' });
+    }
+    await says(pages.pat, /Presenting/);
+    await says(pages.fay, /Following Pat/);
+    await line.locator('button', { hasText: 'Go along' }).click();
+    await isIn(pages.ola, 2);
+    await says(pages.ola, /Following Pat/);
+  });
+
+  it('at the next case that is open to them the one who waited is back by themselves, also after a reload', async () => {
+    await pages.rae.reload();
+    await pages.rae.locator('h1', { hasText: 'Case 2 is not open to you' }).waitFor();
+    await chip(pages.pat).locator('.tool').click();
+    const rows = pages.pat.locator('.meeting-card li');
+    await rows.nth(2).waitFor();
+    assert.match(await rows.nth(0).textContent(), /left open/);
+    assert.match(await rows.nth(1).textContent(), /now/);
+    assert.deepEqual(await axe(pages.pat), []);
+    await shoot(pages.pat, 'case-agenda');
+    await rows.nth(2).locator('button').click();
+    await Promise.all(Object.values(pages).map((page) => isIn(page, 3)));
+    for (const page of Object.values(pages)) await page.locator('.banner', { hasText: 'Third plan' }).waitFor();
+    await Promise.all(['fay', 'rae', 'ola'].map((user) => says(pages[user], /Following Pat/)));
+    assert.deepEqual(
+      (await agenda()).cases.map(({ state }) => state),
+      ['left', 'left', 'now'],
+    );
+  });
+
+  it('the minutes are a page to print, masked, with the cases and who was there', async () => {
+    const page = await browse('rae', `meetings/${meeting}/minutes`);
+    await page.locator('.sheet h1', { hasText: 'Minutes: Tumour board' }).waitFor();
+    const text = (await page.locator('.sheet').textContent()).replace(/\s+/g, ' ');
+    assert.match(text, /First plan.*not open to you.*Third plan/);
+    assert.doesNotMatch(text, /Second plan/);
+    assert.match(text, /Pat.*Case 1: .*Case 2: .*Case 3: /);
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'case-minutes');
+    await page.close();
+  });
+
+  later('the keys do nothing for who may not, and the end stays', async () => {
+    await pages.fay.keyboard.press('Shift+N');
+    await pages.fay.locator('.toast', { hasText: 'Who presents has the meeting go on' }).waitFor();
+    await pages.pat.keyboard.press('Shift+N');
+    await pages.pat.locator('.toast', { hasText: 'This is the last case' }).waitFor();
+    await api(`/meetings/${meeting}/end`, 'pat', 'POST', {});
+    await chip(pages.ola).locator('.tool').click();
+    await pages.ola.locator('.meeting-card', { hasText: 'The meeting is over' }).waitFor();
+  });
+
+  it('no script failed on the way, and nothing was refused', () => {
+    assert.deepEqual([world.errors, world.refused], [[], []]);
+    assert.equal(cases.length, 3);
+  });
+});

@@ -1,0 +1,136 @@
+// The meeting that the room is a case of: how it stands, going on to the next case, the card between two patients, waiting outside. Loaded when the server
+// tells of a meeting.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { effect, signal } from '../../../lib/signals-core.js';
+import { ofMember } from '../../net/api.js';
+import { icon } from '../../parts/icons.js';
+import { agenda } from './agenda.js';
+import { overlay, showCard } from './card.js';
+import { say } from './later_words.js';
+
+const askedS = 10;
+const popover = 'meeting';
+const topic = 'meeting';
+
+/** A form for a decision in which something stands. */
+export function isDecisionWritten(root = document) {
+  const choice = root.querySelector('.record-form select[name="decision"]');
+  return Boolean(choice && (choice.value || choice.form.elements.text?.value.trim()));
+}
+
+/** @param {object} world {room, ui, api, clock, connection, enter} */
+export function join(world) {
+  const { room, ui, api, clock, connection, enter } = world;
+  const told = signal(null); // the message meeting
+  const waits = signal(null); // {n, of}: a case that is not open to this person
+  const asked = signal(null); // {n, until_ms}: the meeting went on, and this person looks on their own
+  const asks = signal(null); // what is asked before the meeting goes on: {go}
+  const list = signal(null); // the agenda as GET gave it
+  let hidden = null;
+
+  const call = (method, path, body) =>
+    api.call(method, `meetings/${told.peek().meeting}${path}`, { body, more: room.identity?.member ? ofMember(room.identity) : {} });
+  const say_ = (error) => ui.notify('err', error.message, topic);
+
+  function goIn(message) {
+    hidden?.();
+    showCard(message, clock);
+    enter(message.room, '', '', false, { member: message.member, secret: message.secret, from: room.id });
+  }
+
+  function taken(message) {
+    if (!message.open) {
+      asked.value = null;
+      waits.value = { n: message.n, of: message.of };
+      return;
+    }
+    waits.value = null;
+    if (!message.asks && !isDecisionWritten()) return goIn(message);
+    const seat = message.asks ? null : message;
+    asked.value = { n: message.n, to: message.to, seat, by: message.by, until: clock.now() + askedS * 1000 };
+  }
+
+  const take = (message) => {
+    if (message.type === 'meeting') {
+      told.value = message;
+      waits.value = message.waits ? { n: message.n_now, of: message.of } : null;
+      if (ui.popover.peek() === popover) void look();
+    } else if (message.type === 'meeting.case') taken(message);
+  };
+
+  const along = () => {
+    const { seat, to } = asked.peek() ?? { to: told.peek()?.now };
+    asked.value = null;
+    if (seat) goIn(seat);
+    else connection.send({ type: 'meeting.go', to: to ?? '' });
+  };
+
+  async function look() {
+    list.value = await call('GET', '').catch(() => list.peek());
+  }
+
+  const send = (to) => {
+    asks.value = null;
+    ui.popover.value = '';
+    connection.send({ type: 'meeting.next', to, from: told.peek().now });
+  };
+
+  /** Has the meeting go on; asks first if a decision is being written. */
+  const next = (to = '') => {
+    const now = told.peek();
+    if (!now || now.over) return;
+    if (!now.may_advance) return ui.notify('ok', say.notYou, topic);
+    if (!to && now.n_now === now.of) return ui.notify('ok', say.isLast, topic);
+    if (isDecisionWritten()) asks.value = { go: () => send(to) };
+    else send(to);
+  };
+
+  const meeting = {
+    told,
+    waits,
+    asked,
+    asks,
+    list,
+    take,
+    along,
+    next,
+    look,
+    stay: () => {
+      asked.value = null;
+    },
+    end: () => {
+      call('POST', '/end', {}).then(look, say_);
+    },
+    leave: () => hidden?.(),
+  };
+
+  // the covers lie over the page, outside of what the room draws
+  const stopTick = effect(() => {
+    const { until } = asked.value ?? {};
+    if (until && ui.now.value >= until) asked.value = null;
+  });
+  const stopOverlay = overlay(world, meeting);
+  hidden = () => {
+    hidden = null;
+    stopTick();
+    stopOverlay();
+  };
+  return meeting;
+}
+
+/** In the strip: which case this is; its card has the agenda and the way on. */
+export function chip(world) {
+  const { ui } = world;
+  const meeting = world.meeting.value;
+  const told = meeting?.told.value;
+  if (!told) return nothing;
+  const isElsewhere = !told.over && told.n_now > 0 && told.now !== told.here;
+  const isOpen = ui.popover.value === popover;
+  const open = () => {
+    ui.toggle(popover);
+    if (!isOpen) void meeting.look();
+  };
+  return html`<span class="anchor meeting-chip">
+    <button class="tool" tabindex="-1" aria-haspopup="dialog" aria-expanded=${isOpen} aria-label=${say.chipIs(told)} title=${say.chipIs(told)} ?data-elsewhere=${isElsewhere} @click=${open}>${icon('table')}<b>${say.caseShort(told)}</b></button>
+    ${isOpen ? html`<div class="popover meeting-card" role="dialog" aria-label=${say.meetingIs}>${agenda(world)}</div>` : nothing}</span>`;
+}
