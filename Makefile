@@ -62,7 +62,7 @@ LDFLAGS += --coverage
 endif
 
 DCMTK_LIBS := -ldcmjpeg -lijg8 -lijg12 -lijg16 -ldcmjpls -ldcmtkcharls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
-CORE_LIBS := $(DCMTK_LIBS) -lopenjp2 -lturbojpeg -lspng -lfreetype -ldeflate -lz -lcjson -ldl -lm
+CORE_LIBS := $(DCMTK_LIBS) -lopenjp2 -lturbojpeg -lspng -lvpx -lfreetype -ldeflate -lz -lcjson -ldl -lm
 UNPACK_LIBS := -larchive
 SERVER_LIBS := -lmicrohttpd -Wl,--as-needed -lwebsockets -lev -lssl -lcrypto -Wl,--no-as-needed -lsqlite3 -lsodium -lcjson -lm
 
@@ -225,7 +225,7 @@ LABEL = $(1)$(if $(filter release,$(VARIANT)),, ($(VARIANT)))
 RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null && echo setarch -R))
 # Programs run side by side; without a sanitizer many wait for most of their time. The thread sanitizer is slow: its programs
 # are those that start threads of their own, or the first of those that read plans by the same ones.
-ONE_THREAD := annotate describe beam_numbers beam_place describe_beam contour_grid dvh_oracle dose_sera_means dicom_numbers dicom_rtplan_opening dicom_rtplan_real dicom_rtdose_dvh \
+ONE_THREAD := annotate video describe beam_numbers beam_place describe_beam contour_grid dvh_oracle dose_sera_means dicom_numbers dicom_rtplan_opening dicom_rtplan_real dicom_rtdose_dvh \
     isoeffective profile sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtdose_real dicom_rtplan \
     dicom_rtstruct dicom_rtstruct_real nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_data plan_real \
     address api_routes beam_angles beam_camera beam_pick beams_drawn bookmark boundary camera clip_planes confine confine_calls contour_fill draw_clip \

@@ -1,4 +1,4 @@
-/* `beamroom render`: draws one picture of a plan. */
+/* `beamroom render`: draws a picture of a plan, or a film of a turn about it. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,6 +10,7 @@
 #include "core/base/clock.h"
 #include "core/base/file_write.h"
 #include "core/base/mem.h"
+#include "core/encode/video.h"
 #include "core/render/visible/visible.h"
 #include "core/scene/camera.h"
 #include "server/cli/command.h"
@@ -186,56 +187,68 @@ static cJSON *make_view(const struct plan *plan, const struct render_arguments *
     return changed;
 }
 
-/* The snapshot of the scene and view that the arguments name. NULL with err. view_document: the view, the caller's;
- * NULL on failure. */
-static struct snapshot *make_snapshot(struct derive *derived, const struct render_arguments *arguments,
-                                      cJSON **view_document, struct error *err)
+/* What the pictures of a command line have in common. */
+struct drawing {
+    const struct render_arguments *arguments;
+    struct derive *derived;
+    cJSON *document, *defaults, *scene, *view; /* of the plan; of a new room; as the arguments say */
+    struct renderer *renderer;
+    struct render_timing timing; /* of the last picture */
+};
+
+static void drawing_finish(struct drawing *drawing)
 {
-    const struct plan *plan = derive_plan(derived);
+    if (drawing->renderer)
+        renderer_forget(drawing->renderer, derive_plan(drawing->derived));
+    renderer_destroy(drawing->renderer);
+    cJSON_Delete(drawing->document);
+    cJSON_Delete(drawing->defaults);
+    cJSON_Delete(drawing->scene);
+    cJSON_Delete(drawing->view);
+}
+
+static bool drawing_begin(struct drawing *drawing, const struct render_arguments *arguments, struct derive *derived,
+                          struct error *err)
+{
+    struct scene scene = { 0 };
+    *drawing = (struct drawing){ .arguments = arguments, .derived = derived };
+    scene_for_plan(derive_plan(derived), &scene);
+    drawing->document = plan_document(derive_plan(derived));
+    drawing->defaults = scene_write(&scene);
+    scene_finish(&scene);
+    return (drawing->scene = make_scene(drawing->document, drawing->defaults, arguments, err)) &&
+           (drawing->view = make_view(derive_plan(derived), arguments, err)) &&
+           (drawing->renderer = renderer_create(arguments->back_end, err));
+}
+
+/* The snapshot of the scene in this view. NULL with err. */
+static struct snapshot *make_snapshot(const struct drawing *drawing, const cJSON *view_json, struct error *err)
+{
+    const char *named = drawing->arguments->view ? drawing->arguments->view : "view";
     struct scene scene = { 0 };
     struct view view = { 0 };
     struct problem problem = { 0 };
     struct snapshot *snapshot = NULL;
     struct acceptances accepted = { 0 };
     char field[128] = "";
-
-    scene_for_plan(plan, &scene);
-    cJSON *document = plan_document(plan), *defaults = scene_write(&scene);
-    cJSON *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
-    scene_finish(&scene);
-    if (!(scene_json = make_scene(document, defaults, arguments, err)) ||
-        !(view_json = make_view(plan, arguments, err)))
-        goto done;
-    if (!(shown_json = scene_document_for_view(document, defaults, scene_json, view_json, &problem))) {
-        refuse_problem(arguments->view ? arguments->view : "view", &problem, err);
-        goto done;
-    }
-    if (!scene_read(shown_json, &scene, &problem)) {
+    cJSON *shown = scene_document_for_view(drawing->document, drawing->defaults, drawing->scene, view_json, &problem);
+    if (!shown)
+        return refuse_problem(named, &problem, err), NULL;
+    if (!scene_read(shown, &scene, &problem)) {
         refuse_problem("scene", &problem, err);
-        goto done;
-    }
-    if (!view_read(view_json, &view, &problem)) {
+    } else if (!view_read(view_json, &view, &problem)) {
         scene_finish(&scene);
         refuse_problem("view", &problem, err);
-        goto done;
-    }
-    if (!list_acceptances(arguments, plan, &accepted, err)) {
+    } else if (!list_acceptances(drawing->arguments, derive_plan(drawing->derived), &accepted, err)) {
         scene_finish(&scene);
         view_finish(&view);
-        goto done;
+    } else {
+        snapshot = snapshot_create_accepted(drawing->derived, &scene, &view, &accepted, 0, field, err);
+        if (!snapshot && *field)
+            error_prefix(err, "%s", field);
     }
-    snapshot = snapshot_create_accepted(derived, &scene, &view, &accepted, 0, field, err);
-    if (!snapshot && *field)
-        error_prefix(err, "%s", field);
-done:
     acceptances_finish(&accepted);
-    cJSON_Delete(document);
-    cJSON_Delete(defaults);
-    cJSON_Delete(scene_json);
-    cJSON_Delete(shown_json);
-    *view_document = snapshot ? view_json : NULL;
-    if (!snapshot)
-        cJSON_Delete(view_json);
+    cJSON_Delete(shown);
     return snapshot;
 }
 
@@ -287,44 +300,160 @@ static void print_missing(const struct snapshot *snapshot)
         fprintf(stderr, "beamroom render: not in the picture: %zu more regions\n", n - VISIBLE_MAX_MISSING);
 }
 
-static bool draw(struct derive *derived, const struct render_arguments *arguments, struct error *err)
+/* The picture, with its caption where the arguments want one; text as in annotate. NULL with err. */
+static struct image *draw_picture(struct drawing *drawing, const struct snapshot *snapshot, const cJSON *view,
+                                  char **text, struct error *err)
 {
-    cJSON *view = NULL;
+    const struct render_options options = { snapshot->view.size_px[0], snapshot->view.size_px[1], SURFACE_FULL, true };
+    struct camera camera;
+    struct image *image = render_snapshot(drawing->renderer, snapshot, &options, &camera, &drawing->timing, err);
+    if (!image || !drawing->arguments->has_annotations)
+        return image;
+    struct image *annotated = annotate(image, snapshot, view, text, err);
+    image_destroy(image);
+    return annotated;
+}
+
+static void print_done(const struct drawing *drawing, int width_px, int height_px, const char *what, int64_t start_us)
+{
+    text_print(stdout, drawing->arguments->out, 0);
+    printf(": %d x %d, %s%zu triangles, %.0f ms, %s\n", width_px, height_px, what, drawing->timing.n_triangles,
+           (double)(clock_now_us() - start_us) / 1000,
+           render_back_end_word(renderer_facts(drawing->renderer)->back_end));
+}
+
+static bool draw_one(struct drawing *drawing, struct error *err)
+{
+    const int64_t start_us = clock_now_us();
     char *text = NULL;
-    struct snapshot *snapshot = make_snapshot(derived, arguments, &view, err);
-    if (!snapshot)
-        return false;
-    bool is_drawn = false;
-    struct image *image = NULL;
-    struct renderer *renderer = renderer_create(arguments->back_end, err);
-    if (renderer) {
-        const struct render_options options = { snapshot->view.size_px[0], snapshot->view.size_px[1], SURFACE_FULL,
-                                                true };
-        struct camera camera;
-        struct render_timing timing = { 0 };
-        int64_t start_us = clock_now_us();
-        image = render_snapshot(renderer, snapshot, &options, &camera, &timing, err);
-        if (image && arguments->has_annotations) {
-            struct image *annotated = annotate(image, snapshot, view, &text, err);
-            image_destroy(image);
-            image = annotated;
-        }
-        is_drawn = image && write_picture(image, text, arguments, err);
-        if (is_drawn) {
-            text_print(stdout, arguments->out, 0);
-            printf(": %d x %d, %zu triangles, %.0f ms, %s\n", image->width_px, image->height_px, timing.n_triangles,
-                   (double)(clock_now_us() - start_us) / 1000,
-                   render_back_end_word(renderer_facts(renderer)->back_end));
-        }
-        if (is_drawn)
-            print_missing(snapshot);
-        renderer_forget(renderer, derive_plan(derived));
+    struct snapshot *snapshot = make_snapshot(drawing, drawing->view, err);
+    struct image *image = snapshot ? draw_picture(drawing, snapshot, drawing->view, &text, err) : NULL;
+    const bool is_drawn = image && write_picture(image, text, drawing->arguments, err);
+    if (is_drawn) {
+        print_done(drawing, image->width_px, image->height_px, "", start_us);
+        print_missing(snapshot);
     }
     free(text);
-    cJSON_Delete(view);
     image_destroy(image);
-    renderer_destroy(renderer);
     snapshot_unref(snapshot);
+    return is_drawn;
+}
+
+/* ---- a film ----------------------------------------------------------------------------------------------------- */
+
+static struct vec3 turned(struct vec3 from, double angle)
+{
+    return vec3(from.x * cos(angle) - from.y * sin(angle), from.x * sin(angle) + from.y * cos(angle), from.z);
+}
+
+static void put_vec3(cJSON *camera, const char *name, struct vec3 value)
+{
+    cJSON_DeleteItemFromObjectCaseSensitive(camera, name);
+    json_add(camera, name, cJSON_CreateDoubleArray((double[]){ value.x, value.y, value.z }, 3));
+}
+
+/* The view after a part of the turn, about the axis to superior through what it looks at. NULL with err. */
+static cJSON *view_on_orbit(const struct drawing *drawing, double part, struct error *err)
+{
+    struct view view = { 0 };
+    struct problem problem = { 0 };
+    struct scene_camera home;
+    if (!view_read(drawing->view, &view, &problem))
+        return refuse_problem("view", &problem, err), NULL;
+    if (view.kind != SCENE_KIND_3D) {
+        view_finish(&view);
+        (void)error_set(err, ERROR_RANGE, "--orbit turns a view of the kind 3d");
+        return NULL;
+    }
+    camera_home(derive_plan(drawing->derived), SCENE_KIND_3D, &home);
+    const struct scene_camera *camera = &view.camera;
+    struct vec3 eye = camera->has_position_mm ? camera->position_mm : home.position_mm,
+                target = camera->has_target_mm ? camera->target_mm : home.target_mm,
+                up = camera->has_up ? camera->up : home.up;
+    const double angle = 2 * MATH_PI * part;
+    cJSON *turned_view = cJSON_Duplicate(drawing->view, true), *json = cJSON_CreateObject();
+    put_vec3(json, "position_mm", vec3_add(target, turned(vec3_sub(eye, target), angle)));
+    put_vec3(json, "target_mm", target);
+    put_vec3(json, "up", turned(up, angle));
+    cJSON *patch = cJSON_CreateObject();
+    json_add(patch, "camera", json);
+    cJSON *changed = view_document_patch(turned_view, patch, &problem);
+    if (!changed)
+        refuse_problem("view", &problem, err);
+    cJSON_Delete(patch);
+    cJSON_Delete(turned_view);
+    view_finish(&view);
+    return changed;
+}
+
+/* The picture of the film's size, of which each side is even; below and at the right it gets the ground's colour. */
+static struct image *fit(const struct image *image, int width_px, int height_px, struct error *err)
+{
+    struct image *even = NULL;
+    if (image->width_px > width_px || image->height_px > height_px)
+        (void)error_set(err, ERROR_RANGE, "the caption needs more lines in a part of the turn: choose a wider picture");
+    else
+        even = image_create(width_px, height_px, err);
+    for (int y = 0; even && y < height_px; y++)
+        for (int x = 0; x < width_px; x++) {
+            const int row = y < image->height_px ? y : image->height_px - 1,
+                      column = x < image->width_px ? x : image->width_px - 1;
+            memcpy(even->rgba + 4 * ((size_t)y * (size_t)width_px + (size_t)x),
+                   image->rgba + 4 * ((size_t)row * (size_t)image->width_px + (size_t)column), 4);
+        }
+    return even;
+}
+
+/* Adds a picture; the first one begins the film. */
+static bool add_picture(struct drawing *drawing, double part, struct video **video, int size_px[2], struct error *err)
+{
+    char *text = NULL;
+    cJSON *view = view_on_orbit(drawing, part, err);
+    struct snapshot *snapshot = view ? make_snapshot(drawing, view, err) : NULL;
+    struct image *image = snapshot ? draw_picture(drawing, snapshot, view, &text, err) : NULL;
+    if (image && !*video) {
+        size_px[0] = image->width_px + image->width_px % 2;
+        size_px[1] = image->height_px + image->height_px % 2;
+        *video = video_create(size_px[0], size_px[1], drawing->arguments->fps, drawing->arguments->quality, err);
+        print_missing(snapshot);
+    }
+    struct image *even = image && *video ? fit(image, size_px[0], size_px[1], err) : NULL;
+    const bool is_added = even && video_add(*video, even, err);
+    image_destroy(even);
+    image_destroy(image);
+    snapshot_unref(snapshot);
+    cJSON_Delete(view);
+    free(text);
+    return is_added;
+}
+
+static bool draw_orbit(struct drawing *drawing, struct error *err)
+{
+    const int64_t start_us = clock_now_us();
+    const int n = (int)fmax(1, round(drawing->arguments->orbit_s * drawing->arguments->fps));
+    struct video *video = NULL;
+    struct encoded film = { 0 };
+    int size_px[2] = { 0, 0 };
+    bool ok = true;
+    for (int i = 0; ok && i < n; i++)
+        ok = add_picture(drawing, (double)i / n, &video, size_px, err);
+    ok = ok && video_finish(video, &film, err) && file_write(drawing->arguments->out, film.bytes, film.n_bytes, err);
+    if (ok) {
+        char words[64];
+        snprintf(words, sizeof words, "%d pictures, ", n);
+        print_done(drawing, size_px[0], size_px[1], words, start_us);
+    }
+    free(film.bytes);
+    video_destroy(video);
+    return ok;
+}
+
+static bool draw(struct derive *derived, const struct render_arguments *arguments, struct error *err)
+{
+    struct drawing drawing;
+    const bool is_drawn = drawing_begin(&drawing, arguments, derived, err) &&
+                          (arguments->orbit_s > 0 ? draw_orbit(&drawing, err) : draw_one(&drawing, err));
+    drawing_finish(&drawing);
     return is_drawn;
 }
 

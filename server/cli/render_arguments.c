@@ -13,14 +13,14 @@
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 
-enum { DEFAULT_QUALITY = 92 };
+enum { DEFAULT_QUALITY = 92, DEFAULT_FPS = 24 };
 
 static void print_help(void)
 {
     printf(
-        "usage: beamroom render DIR -o OUT.png|OUT.jpg [OPTION]...\n"
+        "usage: beamroom render DIR -o OUT.png|OUT.jpg|OUT.webm [OPTION]...\n"
         "Draws one picture of the plan in the folder DIR, the same that the daemon shows for the same scene and view.\n\n"
-        "  -o, --output OUT  the picture; its ending says whether PNG or JPEG\n"
+        "  -o, --output OUT  the picture; its ending says whether PNG, JPEG or, of --orbit, WebM\n"
         "  --scene JSON      what differs from the scene a new room starts with (a merge patch, RFC 7396): JSON in { }, or the\n"
         "                    name of a file of it\n"
         "  --view JSON       what differs from the view a new room starts with, 1024x768: camera, kind, size, override\n"
@@ -60,9 +60,11 @@ static void print_help(void)
         "  --along MM        in a beam's-eye view: the eye's distance from the beam's entry; else the whole plan is seen\n"
         "  --ring MM         in a beam's-eye view: a ring of this diameter about its axis, in parallel projection\n"
         "  --from A,E        looks at the plan from A degrees off the front, towards the patient's left, and E degrees up\n"
+        "  --orbit S[,FPS]   a film of one turn about the patient in S seconds, towards the patient's left, with FPS pictures a\n"
+        "                    second, 24 if it is not said, at most 3600 in all\n"
         "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
         "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
-        "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
+        "  --quality N       of a JPEG or a film, 1 to 100 (default %d)\n"
         "  --annotations     letters, scale bar and a caption below the picture, which makes the file higher; a PNG then\n"
         "                    carries scene and view, so that the page can show them again\n"
         "  --help            this text\n\n"
@@ -104,6 +106,23 @@ static bool parse_from(const char *text, double from_deg[2])
 static bool parse_quality(const char *text, int *quality)
 {
     return parse_between(&text, 1, 100, quality) && *text == 0;
+}
+
+static bool parse_orbit(const char *text, struct render_arguments *arguments)
+{
+    char *end;
+    arguments->orbit_s = strtod(text, &end);
+    if (end == text || !(arguments->orbit_s > 0 && arguments->orbit_s <= VIDEO_MAX_FRAMES))
+        return false;
+    const char *at = end + 1;
+    return (!*end || (*end == ',' && parse_between(&at, 1, VIDEO_MAX_FPS, &arguments->fps) && !*at)) &&
+           arguments->orbit_s * arguments->fps <= VIDEO_MAX_FRAMES;
+}
+
+static bool is_film(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, ".webm") == 0;
 }
 
 static bool codec_from_path(const char *path, enum encode_codec *codec)
@@ -209,6 +228,18 @@ static bool take_size(struct render_arguments *arguments, const struct option_ro
     return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096", word), false;
 }
 
+static bool take_orbit(struct render_arguments *arguments, const struct option_row *row, const char *word)
+{
+    (void)row;
+    if (parse_orbit(word, arguments))
+        return true;
+    return command_usage_error(
+               "render",
+               "--orbit '%s' is not of the form 8 or 8,24: seconds, and 1 to %d pictures a second, at most %d", word,
+               VIDEO_MAX_FPS, VIDEO_MAX_FRAMES),
+           false;
+}
+
 static bool take_back_end(struct render_arguments *arguments, const struct option_row *row, const char *word)
 {
     (void)row;
@@ -248,6 +279,7 @@ static const struct option_row rows[] = {
     WORD("light", show.light),
     WORD("ambient", show.ambient),
     { "from", required_argument, 0, take_from },
+    { "orbit", required_argument, 0, take_orbit },
     { "clip", required_argument, 0, take_clip },
     FLAG("no-caps", show.is_uncapped),
     WORD("dose", dose.dose),
@@ -298,7 +330,7 @@ static bool take_options(int argc, char **argv, struct render_arguments *argumen
 
 bool render_arguments_parse(int argc, char **argv, struct render_arguments *arguments, int *code)
 {
-    *arguments = (struct render_arguments){ .back_end = RENDER_AUTO, .quality = DEFAULT_QUALITY };
+    *arguments = (struct render_arguments){ .back_end = RENDER_AUTO, .quality = DEFAULT_QUALITY, .fps = DEFAULT_FPS };
     *code = EXIT_USAGE;
     if (!take_options(argc, argv, arguments, code))
         return false;
@@ -309,7 +341,13 @@ bool render_arguments_parse(int argc, char **argv, struct render_arguments *argu
         return command_usage_error("render", "one folder is needed, %d are given", argc - optind), false;
     if (!arguments->out)
         return command_usage_error("render", "where to write is needed: -o OUT.png or -o OUT.jpg"), false;
-    if (!codec_from_path(arguments->out, &arguments->codec))
+    if (is_film(arguments->out) != (arguments->orbit_s > 0))
+        return command_usage_error("render",
+                                   arguments->orbit_s > 0 ? "-o '%s' does not end in .webm, as a film has to"
+                                                          : "-o '%s' is a film: --orbit says of what",
+                                   arguments->out),
+               false;
+    if (arguments->orbit_s == 0 && !codec_from_path(arguments->out, &arguments->codec))
         return command_usage_error("render", "-o '%s' does not end in .png, .jpg or .jpeg", arguments->out), false;
     arguments->folder = argv[optind];
     return true;

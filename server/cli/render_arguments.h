@@ -1,6 +1,6 @@
 #pragma once
 /* The command line of `beamroom render`: its options, as a table, and its help. */
-#include "core/encode/encode.h"
+#include "core/encode/video.h"
 #include "core/render/render.h"
 #include "core/scene/fit_use.h"
 #include "server/cli/render_beam.h"
@@ -20,6 +20,8 @@ struct render_arguments {
     bool has_from;  /* from_deg is given: towards the patient's left from the front; up from the horizontal */
     double from_deg[2];
     int quality;
+    double orbit_s; /* a turn about the patient takes so long; 0: one picture */
+    int fps;
     bool has_annotations;
     const char *accepted[ACCEPTANCES_MAX]; /* "THING=WITH" */
     size_t n_accepted;

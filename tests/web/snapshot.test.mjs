@@ -1,7 +1,7 @@
 // Snapshots in the browser: saved, dropped on the page and shown again; the report to print, as PDF.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe } from 'node:test';
@@ -221,6 +221,61 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     assert.equal(await dialog.locator('figure').count(), 2);
     assert.equal(await dialog.getByLabel('Caption of Figure 1').inputValue(), 'Tumour in the slice of its middle');
     assert.deepEqual(world.errors, []);
+    await page.context().close();
+  });
+
+  once('a film of a turn plays in a browser, and its pictures are those that render draws from there', async () => {
+    const draw = (...args) => {
+      const drawn = spawnSync(join(bin, 'beamroom'), ['render', join(folder, 'other'), '--size', '320x240', '--gl', 'soft', ...args]);
+      assert.equal(drawn.status, 0, String(drawn.stderr));
+      return readFileSync(args[args.indexOf('-o') + 1]).toString('base64');
+    };
+    const film = draw('-o', join(folder, 'turn.webm'), '--from', '30,10', '--orbit', '2,5', '--quality', '100', '--annotations');
+    // the camera is turned, so it says from where; letters and caption are in the pictures
+    const stills = ['30,10', '210,10'].map((from, at) => draw('-o', join(folder, `${at}.png`), '--from', from, '--annotations'));
+    const page = await world.newPage('healthz');
+    const { width, height, stillHeight, duration, far, near } = await page.evaluate(
+      async ([video_data, pictures]) => {
+        const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+        const video = document.createElement('video');
+        const loads = (one, name) =>
+          new Promise((ok, no) => {
+            one.addEventListener(name, ok, { once: true });
+            one.addEventListener('error', () => no(new Error(one.error?.message ?? 'not loaded')), { once: true });
+          });
+        const pixels = (source, w, h) => {
+          const canvas = new OffscreenCanvas(w, h);
+          const context = canvas.getContext('2d', { willReadFrequently: true });
+          context.drawImage(source, 0, 0);
+          return context.getImageData(0, 0, w, h).data;
+        };
+        video.muted = true;
+        video.src = URL.createObjectURL(new Blob([bytes(video_data)], { type: 'video/webm' }));
+        await loads(video, 'loadeddata');
+        const images = await Promise.all(pictures.map((text) => createImageBitmap(new Blob([bytes(text)], { type: 'image/png' }))));
+        const [w, h] = [images[0].width, images[0].height];
+        const off = (a, b) => a.reduce((sum, value, at) => sum + Math.abs(value - b[at]), 0) / a.length;
+        const [still, opposite] = images.map((image) => pixels(image, w, h));
+        const frames = [];
+        for (const second of [0.1, 1.1]) {
+          const seeked = loads(video, 'seeked');
+          video.currentTime = second;
+          await seeked;
+          frames.push(pixels(video, w, h));
+        }
+        return {
+          width: video.videoWidth,
+          height: video.videoHeight,
+          stillHeight: h,
+          duration: video.duration,
+          near: [off(frames[0], still), off(frames[1], opposite)],
+          far: off(frames[0], opposite),
+        };
+      },
+      [film, stills],
+    );
+    assert.deepEqual([width, height, duration], [320, stillHeight + (stillHeight % 2), 2]);
+    assert.ok(Math.max(...near) < 2.5 && far > 2 * Math.max(...near), `${near} off, and ${far} from the other side`);
     await page.context().close();
   });
 });
