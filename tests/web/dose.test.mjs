@@ -310,6 +310,9 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await bar.getByRole('button', { name: 'Use it all the same …' }).press('Enter');
     const form = page.locator('.fit-block');
     await shows(form, 'does not fit');
+    await form.getByLabel('Look first: drawn for me alone').check();
+    await form.locator('.fit-looked img').waitFor();
+    assert.equal(await page.locator('.dose-legend').count(), 0); // the room's panes show nothing of it
     const use = form.getByRole('button', { name: 'Use it in this room' });
     await form.getByLabel('Why it may be used').selectOption('compared-on-anatomy');
     await form.getByLabel('In your words, at least 10 letters').fill('too short');
@@ -324,6 +327,7 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await shoot(page, 'fit-form');
     await use.click();
     await bar.waitFor({ state: 'detached' });
+    assert.equal(await page.locator('.fit-looked').count(), 0);
     for (const view of [1, 2, 3, 4]) await shows(page.locator(`[data-view="${view}"] .pane-head .fit-mark`), 'lies apart');
     await shows(page.locator('.dose-legend'), 'lies apart');
     await shows(page.locator('.dose-basis.aside'), 'lies apart');

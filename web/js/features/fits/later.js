@@ -22,6 +22,7 @@ import {
   voidRows,
 } from './fits.js';
 import { patientOf } from '../../room/identity.js';
+import { endLook, lookFirst } from './first_look.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
 
@@ -188,12 +189,14 @@ function formBlock(world, use) {
   const isShort = nLetters(now.words) < minLetters;
   const cancel = () => {
     set({ words: '', error: '' });
+    endLook();
     ui.showTab('probe');
   };
   const part = partOf(plan, use.thing);
   return html`<section class="block fit-block" aria-label=${say.whatNot}>
     <h3 class="warn">${icon('warning')} ${say.notWith({ part: part.name || part.word, other: partOf(plan, use.with).name })}</h3>
     <p class="note">${use.reason}</p>${factsTable(plan, use)}
+    ${lookFirst(world, use, !mayAccept || now.isSent)}
     <label class="fit-label" for="fit-reason">${say.why}</label>
     <select id="fit-reason" ?disabled=${!mayAccept || now.isSent} @change=${(event) => set({ reason: event.target.value })}>
       ${reasons.map(([id, name]) => html`<option value=${id} ?selected=${id === now.reason}>${name}</option>`)}</select>
@@ -216,6 +219,7 @@ async function accept(world, use, { reason, words }, set) {
     try {
       const row = await room.items.put('acceptance', body);
       undo?.noteAct({ name: say.undoUse({ part: partName(room.plan.peek(), use.thing) }), ...acts(room, row, body) });
+      endLook();
       return void set({ isSent: false, words: '' });
     } catch (problem) {
       if (problem.type !== '/problems/busy' || n === tries) return void set({ isSent: false, error: problem.detail || say.refused });
