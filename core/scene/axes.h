@@ -16,7 +16,7 @@ struct axis_end {
 /* The middle of the plan's bounds, and the ends in the order of the letters: middle +- AXES_REACH times the box's size
  * along L, P and S. Returns false, and fills nothing, if the bounds are empty. */
 bool axes_of_plan(const struct plan *plan, struct vec3 *middle_lps_mm, struct axis_end ends[AXES_N_ENDS]);
-/* The same in the scene's form: through the crosshair they meet there and end at the same heights along their axes. */
+/* Fills in the same of the scene's form: through the crosshair they meet there and end at the same heights. */
 bool axes_of_scene(const struct plan *plan, const struct scene *scene, struct vec3 *meet_lps_mm,
                    struct axis_end ends[AXES_N_ENDS]);
 

@@ -250,6 +250,74 @@ static void patient_axes_are_lines_through_the_middle_of_the_plan(void **state)
     shots_forget(plan);
 }
 
+/* Whether a picture with these axes differs from one without, within 2 pixels of a place in mm right and up. */
+static bool is_painted(const struct image *with, const struct image *without, double right_mm, double up_mm, int scale)
+{
+    const int x = (int)floor(SHOTS_WIDTH / 2.0 + right_mm * scale), y = (int)floor(SHOTS_HEIGHT / 2.0 - up_mm * scale);
+    for (int dy = -1; dy <= 1; dy++)
+        for (int dx = -1; dx <= 1; dx++)
+            if (memcmp(shots_pixel(with, x + dx, y + dy), shots_pixel(without, x + dx, y + dy), 4) != 0)
+                return true;
+    return false;
+}
+
+/* From the front; the box is 80 mm wide and high: its edges are 40 mm from the middle, lines through the crosshair end
+ * at 48 mm, ticks are every 10 mm and 3 pixels to either side, 6 every 50 mm. */
+static void axes_stand_through_the_crosshair_as_a_box_or_in_the_corner(void **state)
+{
+    (void)state;
+    enum { SCALE = 2 };
+    struct grid grid = marked_grid(0);
+    struct plan *plan = made_plan(&grid, mark_label, marks, 0);
+    struct image *images[SCENE_AXES_FORM_CORNER + 1], *ticks[2];
+    const struct view view = shots_view_from(centre, vec3(0, -1, 0), vec3(0, 0, 1), SCALE);
+    struct image *without = shots_plain(plan, shots_scene(plan), view);
+    for (int i = 0; i <= SCENE_AXES_FORM_CORNER + 2; i++) {
+        struct scene scene = shots_scene(plan);
+        scene.axes.visible = true;
+        scene.axes.ticks = i > SCENE_AXES_FORM_CORNER;
+        scene.axes.form = i <= SCENE_AXES_FORM_CORNER       ? (enum scene_axes_form)i
+                          : i == SCENE_AXES_FORM_CORNER + 1 ? SCENE_AXES_FORM_MIDDLE
+                                                            : SCENE_AXES_FORM_BOX;
+        scene.image.slices.sagittal.position_mm = centre.x + 20;
+        scene.image.slices.coronal.position_mm = centre.y;
+        scene.image.slices.axial.position_mm = centre.z - 15;
+        struct image *image = shots_plain(plan, scene, view);
+        if (i <= SCENE_AXES_FORM_CORNER)
+            images[i] = image;
+        else
+            ticks[i - SCENE_AXES_FORM_CORNER - 1] = image;
+    }
+    const struct image *crosshair = images[SCENE_AXES_FORM_CROSSHAIR], *box = images[SCENE_AXES_FORM_BOX],
+                       *corner = images[SCENE_AXES_FORM_CORNER];
+    assert_true(is_painted(crosshair, without, 20, 45, SCALE) && is_painted(crosshair, without, -45, -15, SCALE));
+    assert_true(is_painted(crosshair, without, 20, 0, SCALE) && is_painted(crosshair, without, 0, -15, SCALE));
+    assert_false(is_painted(crosshair, without, 0, 30, SCALE) || is_painted(crosshair, without, 20, 52, SCALE));
+    assert_true(is_painted(box, without, 40, 0, SCALE) && is_painted(box, without, 0, -40, SCALE) &&
+                is_painted(box, without, -40, 40, SCALE));
+    assert_false(is_painted(box, without, 0, 0, SCALE) || is_painted(box, without, 46, 0, SCALE));
+    /* in the corner: 0.13 of 300 pixels from the left, 0.19 from below, arms of 0.06: L to the right, S up */
+    const double left = (0.13 * 300 - SHOTS_WIDTH / 2.0) / SCALE, low = (0.19 * 300 - SHOTS_HEIGHT / 2.0) / SCALE;
+    assert_true(is_painted(corner, without, left + 12 / SCALE, low, SCALE));
+    assert_true(is_painted(corner, without, left, low + 12 / SCALE, SCALE));
+    assert_false(is_painted(corner, without, left - 6, low, SCALE) ||
+                 is_painted(corner, without, left, low - 6, SCALE) || is_painted(corner, without, 0, 0, SCALE));
+    /* ticks: at 10 and 30 mm from the middle short ones, none between; on the box's edge from the right at 50 mm */
+    const double aside = 3.0 / SCALE;
+    assert_true(is_painted(ticks[0], images[SCENE_AXES_FORM_MIDDLE], 10, aside, SCALE) &&
+                is_painted(ticks[0], images[SCENE_AXES_FORM_MIDDLE], -30, aside, SCALE));
+    assert_false(is_painted(ticks[0], images[SCENE_AXES_FORM_MIDDLE], 15, aside, SCALE));
+    assert_true(is_painted(ticks[1], box, 10, 40 + 6.0 / SCALE, SCALE)); /* -40 + 50 */
+    assert_false(is_painted(ticks[1], box, 0, 40 + 6.0 / SCALE, SCALE)); /* -40 + 40: a short one */
+    assert_true(is_painted(ticks[1], box, 0, 40 + 2.0 / SCALE, SCALE));
+    for (int i = 0; i <= SCENE_AXES_FORM_CORNER; i++)
+        image_destroy(images[i]);
+    image_destroy(ticks[0]);
+    image_destroy(ticks[1]);
+    image_destroy(without);
+    shots_forget(plan);
+}
+
 /* ---- the 48 orders in which the voxels of an image can be stored ------------------------------------------------ */
 
 enum { N_ORDERS = 48, ORDER_WIDTH = 200, ORDER_HEIGHT = 160 };
@@ -431,6 +499,7 @@ int main(void)
         cmocka_unit_test(image_slices_lie_as_the_panes_say),
         cmocka_unit_test(an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left),
         cmocka_unit_test(patient_axes_are_lines_through_the_middle_of_the_plan),
+        cmocka_unit_test(axes_stand_through_the_crosshair_as_a_box_or_in_the_corner),
         cmocka_unit_test(all_48_orders_of_the_voxels_give_the_same_pictures),
     };
     return shots_run("orientation", tests, sizeof tests / sizeof tests[0]);

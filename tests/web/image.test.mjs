@@ -12,7 +12,7 @@ import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 import { histogram, percentiles, windows, writeThreeImages } from './three_images.mjs';
 
-/** As the server writes it: a window that is given without gamma has 1. */
+/** Part of a scene as the server writes it: a window that is given without gamma has 1. */
 const withGamma = (part) =>
   Object.fromEntries(
     Object.entries(part).map(([name, value]) => {

@@ -223,6 +223,41 @@ static void letters_stand_at_the_ends_of_the_axes_in_3d_alone(void **state)
     plan_and_derived_destroy(plan);
 }
 
+/* The box is 60 mm a side: ends at 36 mm. */
+static void letters_stand_where_the_form_of_the_axes_has_its_ends(void **state)
+{
+    (void)state;
+    struct plan *plan = ramp_plan();
+    struct scene scene = scene_of(plan);
+    scene.axes.visible = true;
+    scene.axes.form = SCENE_AXES_FORM_CROSSHAIR;
+    scene.image.slices.sagittal.position_mm = 10;
+    scene.image.slices.axial.position_mm = -20;
+    struct annotations annotations = describe(plan, scene, SCENE_KIND_3D);
+    assert_int_equal(annotations.n_labels, 6);
+    expect_place(annotations.labels[0].at, 36, -20); /* L */
+    expect_place(annotations.labels[4].at, 10, 36);  /* S */
+    annotations_finish(&annotations);
+    scene = scene_of(plan);
+    scene.axes.visible = true;
+    scene.axes.form = SCENE_AXES_FORM_CORNER;
+    annotations = describe(plan, scene, SCENE_KIND_3D);
+    assert_int_equal(annotations.n_labels, 3);
+    assert_string_equal(annotations.labels[0].text, "L");
+    assert_string_equal(annotations.labels[2].text, "S");
+    assert_true(annotations.labels[0].at[0] > annotations.labels[2].at[0]); /* to the right */
+    assert_true(annotations.labels[2].at[1] < annotations.labels[0].at[1]); /* above */
+    assert_true(annotations.labels[0].at[0] < 0.3 && annotations.labels[2].at[1] > 0.6);
+    annotations_finish(&annotations);
+    scene = scene_of(plan);
+    scene.axes.visible = true;
+    scene.axes.letters = false;
+    annotations = describe(plan, scene, SCENE_KIND_3D);
+    assert_int_equal(annotations.n_labels, 0);
+    annotations_finish(&annotations);
+    plan_and_derived_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +266,7 @@ int main(void)
         cmocka_unit_test(lines_are_painted_on_the_picture_and_nowhere_else),
         cmocka_unit_test(the_axes_stand_a_tenth_out_of_the_plans_box_on_each_side),
         cmocka_unit_test(letters_stand_at_the_ends_of_the_axes_in_3d_alone),
+        cmocka_unit_test(letters_stand_where_the_form_of_the_axes_has_its_ends),
     };
     return cmocka_run_group_tests_name("marks", tests, NULL, NULL);
 }

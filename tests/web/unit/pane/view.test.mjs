@@ -183,6 +183,16 @@ test('a side of the cube lies where its letter stands at the edge of the picture
   const ends = Object.fromEntries(axisEnds(matrix, { low: [-10, -20, -30], high: [10, 20, 30] }).map((end) => [end.letter, end]));
   // 0.6 of 40 and 60 mm of 200 mm
   near([ends.A.x, ends.A.y, ends.S.x, ends.S.y], [0.5 + 24 / 200, 0.5, 0.5, 0.5 - 36 / 200], 1e-6);
+  const box = { low: [-10, -20, -30], high: [10, 20, 30] };
+  const through = Object.fromEntries(axisEnds(matrix, box, 'crosshair', [3, -8, 10]).map((end) => [end.letter, end]));
+  near([through.A.x, through.A.y, through.S.x, through.S.y], [0.5 + 24 / 200, 0.5 - 10 / 200, 0.5 + 8 / 200, 0.5 - 36 / 200], 1e-6);
+  const corner = axisEnds(matrix, box, 'corner', [0, 0, 0], [400, 200]);
+  assert.deepEqual(
+    corner.map(({ letter }) => letter),
+    ['L', 'P', 'S'],
+  );
+  // 0.13 and 0.19 of 200 px from left and below, letters 0.085 of it away: P to the left, S up
+  near([corner[1].x, corner[1].y, corner[2].x, corner[2].y], [(26 - 17) / 400, 1 - 38 / 200, 26 / 400, 1 - 55 / 200], 1e-6);
 });
 
 test('rolling turns the picture about its middle and nothing else', () => {

@@ -7,10 +7,10 @@ import { say } from './later_words.js';
 const coloursOf = (table) => dosePresets.levelTables.find(({ id }) => id === table).levels.map(({ color }) => color);
 const sera = coloursOf('sera');
 const safe = coloursOf('safe');
-/** Of a map the lowest part is left out: it is black in some, and no line is seen on air. */
+/** The lowest part of a map is left out: it is black in some, and no line is seen on air. */
 const lowestPart = 0.25;
 const ofMap = (id) => (n) => Array.from({ length: n }, (_, i) => colorAt(id, n > 1 ? 1 - ((1 - lowestPart) * i) / (n - 1) : 1));
-/** So many of a list, spread over it. Any two of the safe colours are told apart, so any choice of them is. */
+/** Colours of a list, n of them, spread over it. Any two of the safe colours are told apart, so any choice of them is. */
 const spread = (all) => (n) => Array.from({ length: n }, (_, i) => all[n > 1 ? Math.round((i * (all.length - 1)) / (n - 1)) : 0]);
 
 /** Word, name, what it is, how many levels it has colours for, the colours of n levels, highest first. */

@@ -4,7 +4,7 @@ import { live } from '../../../lib/directives/live.js';
 import { numberField, segment } from '../../parts/fields.js';
 import { say } from './later_words.js';
 
-/** As proto/scene.json has them: name, words, least, most, step of the slider, unit, shown = value times factor. */
+/** Numbers of the light, as proto/scene.json has them: name, words, least, most, step of the slider, unit, shown = value times factor. */
 const rows = [
   ['azimuth_deg', say.azimuth, -180, 180, 1, '°', 1],
   ['elevation_deg', say.elevation, -90, 90, 1, '°', 1],

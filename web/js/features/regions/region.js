@@ -6,6 +6,7 @@ import { enabledClips } from '../clip/clip.js';
 import { ownRegions } from '../../room/identity.js';
 import { crosshairPatch, shownImage, soloPatch } from '../../room/plan.js';
 import { representations } from './representations.js';
+import { tissueColours } from './tissue_colours.js';
 import { isExportable, shapeQuery, volumeDifference } from './shapes.js';
 import { isWashOff, textureNote, textureOf, texturePatch, textures, withInner } from './textures.js';
 import { waitReason } from '../../room/waits.js';
@@ -41,7 +42,7 @@ export function regionBlock(world, region) {
       ${region.touches_edge ? html`<dt>${say.edge}</dt><dd>${say.cutByEdge}</dd>` : nothing}
       <dt>${say.opacity}</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(style.opacity * 100)))} aria-label=${say.opacity} ?disabled=${isDisabled}
         @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField(say.opacityPercent, Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd>
-      <dt>${say.colour}</dt><dd><input type="color" .value=${live(style.color)} aria-label=${say.colour} ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd>
+      <dt>${say.colour}</dt><dd class="pair"><input type="color" .value=${live(style.color)} aria-label=${say.colour} ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}>${tissueColour(style, isDisabled, change)}</dd>
       <dt title=${say.orderIs}>${say.order}</dt><dd>${numberField(say.orderHigher, style.order, '', isDisabled, (value, event) => change({ order: Math.min(Math.max(Math.round(value), -1000), 1000) }, event))}</dd></dl>
     ${style.clipped && !enabledClips(plan, scene).length ? nothing : html`<div class="checks">${checkbox(say.notCut, style.clipped === false, isDisabled, (on, event) => change({ clipped: !on }, event), say.notCutIs)}</div>`}
     <div class="shown-as"><span class="dim">${say.shownAs}</span>${segment(say.shownAs, representations, style.representation, isDisabled || !region.voxels, (representation, event) => change({ representation }, event))}</div>
@@ -58,6 +59,15 @@ export function regionBlock(world, region) {
           : nothing
       }</div>
     ${region.voxels && isExportable(style.representation) && world.room.control.mayExport && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
+}
+
+/** Choice among usual colours of tissues. */
+function tissueColour({ color }, isDisabled, change) {
+  const now = tissueColours.find(([, of]) => of === color);
+  return html`<select aria-label=${say.tissueColour} ?disabled=${isDisabled} @change=${(event) => change({ color: event.target.value }, event)}>
+    <option value="" .selected=${live(!now)} disabled>${say.ownColour}</option>${tissueColours.map(
+      ([name, of]) => html`<option value=${of} .selected=${live(of === color)}>${name}</option>`,
+    )}</select>`;
 }
 
 /** Choice of what colours the region in 3-D, and those inside it. */
