@@ -147,25 +147,15 @@ bool meetings_ask_in(const struct net *net, const char *room, const struct ident
 
 /* ---- what rooms know -------------------------------------------------------------------------------------------- */
 
-/* The words of the plan, as far as they are known. */
+/* The words of the plan, masked, as its files said them when they were looked at. */
 static void look_at_plan(const struct net *net, struct meeting_case *one)
 {
     struct fleet_plan plan;
     if (!one->plan[0] || !fleet_plan_find(net->fleet, one->plan, &plan))
         return;
-    const cJSON *patients = cJSON_GetObjectItemCaseSensitive(plan.document, "patients"),
-                *treatments = cJSON_GetObjectItemCaseSensitive(plan.document, "treatment_plans");
-    const cJSON *patient = cJSON_GetArrayItem(patients, (int)json_number(plan.document, "shown_patient", -1)),
-                *treatment = cJSON_GetArrayItem(treatments, (int)json_number(plan.document, "shown_plan", -1));
-    const char *label = json_text(treatment, "label");
-    if (plan.document) {
-        json_put_text(one->patient, sizeof one->patient, patient, "masked");
-        json_put_text(one->approval, sizeof one->approval, treatment, "approval");
-    }
-    if (plan.is_phantom)
-        mem_put_text(one->patient, sizeof one->patient, "PHANTOM");
-    if (plan.document || !one->label[0])
-        mem_put_text(one->label, sizeof one->label, label && label[0] ? label : plan.name);
+    mem_put_text(one->patient, sizeof one->patient, plan.is_phantom ? "PHANTOM" : plan.patient);
+    mem_put_text(one->approval, sizeof one->approval, plan.approval);
+    mem_put_text(one->label, sizeof one->label, plan.label && plan.label[0] ? plan.label : plan.name);
 }
 
 static const struct net_room *room_awake(const struct net *net, const char *id)

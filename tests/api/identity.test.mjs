@@ -29,7 +29,7 @@ const secrets = [
   '1955-07-23',
 ];
 
-let plans, data, daemon, api, room;
+let plans, data, daemon, api, room, meeting;
 const clients = [];
 
 before(async () => {
@@ -261,6 +261,28 @@ const values = {
   representation: 'surface',
 };
 
+test('a meeting names the patient of a case masked, in its agenda, on the way there and in its minutes', async () => {
+  const made = await call(`${api}/meetings`, 'POST', { name: 'Board', cases: [{ plan: 'case-1', room }, { plan: 'case-1' }] });
+  assert.equal(made.status, 201, made.text);
+  meeting = made.json.id;
+  const shown = { patient: 'Q. Z. …419', approval: 'APPROVED' };
+  const [{ patient, approval }] = made.json.cases;
+  assert.deepEqual({ patient, approval }, shown);
+  const client = await Client.enter(daemon.url, room, { name: 'Ann' });
+  clients.push(client);
+  const go = (from) => call(`${api}/meetings/${meeting}/case`, 'POST', { case: 'next', from });
+  assert.equal((await go(null)).status, 200);
+  assert.equal((await go('c1')).status, 200);
+  const told = await client.message('meeting.case');
+  assert.deepEqual([told.patient, told.approval, told.n], [shown.patient, shown.approval, 2]);
+  const minutes = await call(`${api}/meetings/${meeting}/minutes`);
+  assert.deepEqual(
+    minutes.json.cases.map((one) => one.patient),
+    [shown.patient, shown.patient],
+  );
+  for (const text of [made.text, minutes.text, JSON.stringify(client.messages)]) assertMasked('a meeting', text);
+});
+
 test('no other answer, and nothing on the disk or in the log, says who the patients are', async () => {
   const spec = (await call(`${api}/openapi.json`)).json;
   const client = clients[0];
@@ -272,7 +294,7 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
     if (!get || path === '/api/v1/plans/{plan}/identity' || /\/(ws|stream|events)$/.test(path)) continue;
     const address = path.replace(
       /\{(\w+)\}/g,
-      (_, name) => ({ plan: 'case-1', room, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none',
+      (_, name) => ({ plan: 'case-1', room, meeting, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none',
     );
     const query = new URLSearchParams();
     for (const parameter of get.parameters ?? [])
