@@ -224,6 +224,7 @@ void api_meeting_enter(struct api *api, struct call *call)
     cJSON_AddStringToObject(answer, "state", meeting_state_word(meeting_state(meeting)));
     json_add(answer, "starts_ms",
              meeting->starts_ms ? cJSON_CreateNumber((double)meeting->starts_ms) : cJSON_CreateNull());
+    cJSON_AddStringToObject(answer, "role", wire_member_role_words.words[link->role]);
     json_add(answer, "room", now ? cJSON_CreateString(now->room) : cJSON_CreateNull());
     call_answer_json(call, 200, answer);
 }

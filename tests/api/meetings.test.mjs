@@ -190,7 +190,7 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     const wall = await ok(`/meetings/${meeting}/links`, pat, 'POST', { role: 'wall', expires_s: 31536000 });
     assert.equal(link.url, `/meetings/${meeting}#link=${link.token}`);
     const door = await ok(`/meetings/${meeting}/enter`, {}, 'POST', { link: link.token });
-    assert.deepEqual([door.room, door.state], [people.room, 'running']);
+    assert.deepEqual([door.room, door.state, door.role], [people.room, 'running', 'reviewer']);
     assert.equal((await api(`/meetings/${meeting}/enter`, {}, 'POST', { link: '0'.repeat(32) })).status, 404);
     people.link = link;
     people.guest = await welcomed({}, door.room, { name: 'Dr. Guest', link: link.token });

@@ -146,6 +146,13 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     assert.match(await rows.nth(1).textContent(), /now/);
     assert.deepEqual(await axe(pages.pat), []);
     await shoot(pages.pat, 'case-agenda');
+    await pages.pat.locator('.case-invite summary').click();
+    await pages.pat.locator('.case-invite form button').click();
+    const made = pages.pat.getByLabel('The link, told once');
+    await made.waitFor();
+    assert.match(await made.inputValue(), new RegExp(`/meetings/${meeting}#link=[0-9a-f]{32}$`));
+    await pages.pat.locator('.case-links button', { hasText: 'End it' }).click();
+    await pages.pat.locator('.case-links li').waitFor({ state: 'detached' });
     await rows.nth(2).locator('button').click();
     await Promise.all(Object.values(pages).map((page) => isIn(page, 3)));
     for (const page of Object.values(pages)) await page.locator('.banner', { hasText: 'Third plan' }).waitFor();

@@ -3,6 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
 import { signal } from '../../../lib/signals-core.js';
 import { keyMark } from '../../parts/fields.js';
+import { inviteBlock } from './invite.js';
 import { say } from './later_words.js';
 
 const isSure = signal(false); // "End the meeting" was pressed once
@@ -46,6 +47,7 @@ export function agenda(world) {
       ({ id }) => id,
       (one, index) => row(one, index, meeting),
     )}</ol>
+    ${list?.may.edit ? inviteBlock(meeting, Boolean(world.session?.value?.facts.value.guest_links)) : nothing}
     <div class="room-actions"><a class="button" href=${`/meetings/${told.meeting}/minutes`} target="_blank" title=${say.minutesIs}>${say.minutes}</a>
     ${
       mayEnd

@@ -25,6 +25,7 @@ export function join(world) {
   const waits = signal(null); // {n, of}: a case that is not open to this person
   const asked = signal(null); // {n, until_ms}: the meeting went on, and this person looks on their own
   const asks = signal(null); // what is asked before the meeting goes on: {go}
+  const isInviting = signal(false); // the card shows links
   const list = signal(null); // the agenda as GET gave it
   let hidden = null;
 
@@ -91,6 +92,8 @@ export function join(world) {
     asked,
     asks,
     list,
+    isInviting,
+    call,
     take,
     along,
     next,

@@ -38,7 +38,8 @@ export function meetingPage(host, id, { api, clock, link = '', isMinutes, enter 
       problem.value = error;
     }
     if (isLeft || isMinutes || problem.peek()) return;
-    if (door.peek().room) enter(door.peek().room, '', link, true);
+    if (door.peek().room && door.peek().role === 'wall') location.replace(`/display/${door.peek().room}#link=${link}`);
+    else if (door.peek().room) enter(door.peek().room, '', link, true);
     else if (door.peek().state !== 'over') timer = clock.setTimeout(open, againMs);
   };
 
