@@ -15,10 +15,10 @@
 #include "server/wire/json.h"
 
 /* The pictures first: STORE_FIGURES of them, by their place. */
-enum { ASK_DOSE = STORE_FIGURES, ASK_DVH, ASK_LIMITS, ASK_FITS, ASK_BEAM, ASK_IDENTITY, N_ASKED };
+enum { ASK_DOSE = STORE_FIGURES, ASK_DVH, ASK_LIMITS, ASK_FITS, ASK_BEAM, ASK_IRRADIATION, ASK_IDENTITY, N_ASKED };
 static const char *const names[N_ASKED] = {
     "axial picture", "sagittal picture", "coronal picture", "3-D picture", "dose", "dvh", "limits", "fits",
-    "beam",          "identity"
+    "beam",          "irradiation",      "identity"
 };
 static const char *const kinds[STORE_FIGURES] = { "axial", "sagittal", "coronal", "3d" };
 
@@ -372,6 +372,9 @@ static void ask_all(struct gathering *gathering, const struct packet_snapshot *s
     packet_init(&packet, PACKET_BEAM);
     packet.beam.shown = *shown;
     ask(gathering, ASK_BEAM, &packet);
+    packet_init(&packet, PACKET_IRRADIATION);
+    packet.irradiation.shown = *shown;
+    ask(gathering, ASK_IRRADIATION, &packet);
     packet_init(&packet, PACKET_IDENTITY);
     ask(gathering, ASK_IDENTITY, &packet);
 }

@@ -55,6 +55,7 @@ void table_end(struct paper *paper, cJSON *table, const char *without);
 /* ---- parts -------------------------------------------------------------------------------------------------------- */
 
 void front_add(struct paper *paper);
+void irradiation_add(struct paper *paper);
 void parts_add(struct paper *paper);
 const cJSON *paper_treatment(const struct paper *paper); /* the shown treatment plan; NULL: there is none */
 const char *region_name(const struct paper *paper, const char *id);

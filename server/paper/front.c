@@ -507,6 +507,7 @@ void front_add(struct paper *paper)
     add_missing(paper);
     add_basis(paper);
     add_limits(paper);
+    irradiation_add(paper);
     add_histogram(paper);
     add_used(paper);
     add_draft(paper);

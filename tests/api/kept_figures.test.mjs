@@ -87,6 +87,9 @@ test('a decision is kept with pictures, histogram and limits of that moment, and
     kept.limits.constraints.map(({ id, region, limit }) => [id, region, limit]),
     [['limit-1', 'target', 1]],
   );
+  const [reach] = kept.irradiation.limits;
+  assert.deepEqual([kept.irradiation.first, reach.id, kept.irradiation.output], [null, 'limit-1', 'min at 1e10 n/cm2/s']);
+  assert.ok(Math.abs(reach.units * kept.limits.constraints[0].value - 1) < 1e-6, 'the limit is 1, of what is there per minute');
   assert.equal(kept.beam.is_draft, false);
   assert.equal(kept.identity_sha256, undefined, 'a phantom has none');
   assert.deepEqual(
@@ -103,11 +106,9 @@ test('a decision is kept with pictures, histogram and limits of that moment, and
     words('dose').some((text) => /100 % = .* Gy\(w\)/.test(text)),
     `the basis: ${words('dose')}`,
   );
-  if (process.env.KEEP_PICTURES) writeFileSync('/tmp/rec/kept.json', JSON.stringify(one.json, null, 1));
   for (const { place, sha256: hash, n_bytes: nBytes } of kept.figures) {
     const { status, type, bytes } = await picture(`${at}/figures/${place + 1}`);
     assert.deepEqual([status, type], [200, 'image/jpeg']);
-    if (process.env.KEEP_PICTURES) writeFileSync(`/tmp/rec/fig${place}.jpg`, bytes);
     assert.deepEqual([bytes.length, sha256(bytes), jpegSize(bytes)], [nBytes, hash, [1600, 1200]]);
   }
   for (const wrong of ['0', '5', '11', 'x']) assert.equal((await call(`${at}/figures/${wrong}`)).status, 404);
@@ -139,6 +140,7 @@ test('the paper is the same after weights, scene, name of the plan and time zone
   assert.match(before.printed, /^printed \d+ \w+ \d{4}, \d\d:\d\d:\d\d EET \(UTC\+2\)$/);
   assert.match(before.rest.under, /^State of the decision, .* EET \(UTC\+2\)$/);
   const words = textsOf(before.rest);
+  assert.match(words, /Irradiation time.*No known limit ends the irradiation/);
   for (const said of [
     'Accept with changes',
     'Less gap',
@@ -232,6 +234,7 @@ test('a decision without its renderer is kept all the same, and says what is mis
     'dvh',
     'fits',
     'identity',
+    'irradiation',
     'limits',
     'sagittal picture',
   ]);

@@ -16,7 +16,7 @@ export const say = sentences('dose.plots.irradiation', {
   share: 'Share',
   first: 'first',
   ends: '{limit} is reached first: {time}.',
-  noFirst: 'No limit that is known is reached at any time.',
+  noFirst: 'No known limit ends the irradiation.',
   mayComeBefore: 'A limit that is not known may come before it.',
   limit: 'Limit',
   output: 'Output',
