@@ -1,6 +1,8 @@
 // Ways on for a person whose room has ended or never existed: a room on the same plan, an existing or a new one.
 import { signal } from '../../lib/signals-core.js';
-import { present } from './plans.js';
+
+/** The members that are in a room now. */
+export const present = (room) => room.members.filter(({ connected }) => connected !== false);
 
 const attempts = 5;
 const againMs = 1000;

@@ -1,4 +1,5 @@
 // State of the start page: the plans and rooms, the jobs that load plans, the report of the chosen plan.
+import { present } from './after_room.js';
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { Problem } from '../net/api.js';
 import { readReport } from './plan.js';
@@ -13,8 +14,7 @@ export const isOfServer = (problem) => ['/problems/busy', '/problems/limit'].inc
 /** True for a folder that is listed but is no plan: nothing in it can be shown, and nothing says that it is meant to be one. */
 export const isNoPlan = (plan) => plan.state === 'unreadable' && !plan.has_plan_file && !plan.uploaded;
 
-/** The members that are in a room now. */
-export const present = (room) => room.members.filter(({ connected }) => connected !== false);
+export { present };
 
 export class PlansState {
   #api;

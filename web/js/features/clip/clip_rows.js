@@ -1,40 +1,18 @@
-// The clip planes in the tree: a row for each with its switch, the side it keeps, its position and its cap; below them what caps show. Keys C and K.
+// The clip planes in the tree: a row for each with its switch, the side it keeps, its position and its cap; below them what caps show. Loaded before the first click.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
-import {
-  allThroughCrosshair,
-  capWords,
-  clipName,
-  clipsOf,
-  enabledClips,
-  movedClip,
-  positionOfClip,
-  switchedClip,
-  toggledCaps,
-  toggledClips,
-} from './clip.js';
+import { allThroughCrosshair, capWords, clipName, clipsOf, enabledClips, movedClip, positionOfClip, switchedClip } from './clip.js';
 import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
-import { say } from './words.js';
+import { toggleClips } from './clip_switch.js';
+import { say } from './row_words.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 const tenths = (value) => Math.round(value * 10) / 10 || 0;
 
 /** "S −64.9 mm", "12.0 mm" along a beam. */
 export const clipPosition = (row, position) => `${row.letter ? `${row.letter} ` : ''}${number(position, 1)} mm`;
-
-export const hasClips = (plan) => plan.images.length + plan.regions.length;
-
-/** "2 on"; '' while nothing is cut. */
-export function clipNote({ room }) {
-  const n = enabledClips(room.plan.value, room.scene.value).length;
-  return n ? say.nOn({ n }) : say.off;
-}
-
-/** Whether anything is cut off. */
-export const isClipped = ({ room }) =>
-  Boolean(room.plan.value && room.scene.value?.clip && enabledClips(room.plan.value, room.scene.value).length);
 
 export function clipRows(world) {
   const { room } = world;
@@ -106,20 +84,4 @@ function actionRow(room, ui, id, picture, words, isOff, act) {
       ui.row.value = key;
       run(event);
     }} @row-toggle=${(event) => run(event.detail)}><button tabindex="-1" ?disabled=${isDisabled}>${icon(picture)}${words}</button></li>`;
-}
-
-// ---- keys of a pane -----------------------------------------------------------------------------------------------------
-
-/** Key C: all clip planes off, or on again as they were. */
-export function toggleClips(room, ui, at) {
-  const { patch, remembered } = toggledClips(room.plan.value, room.scene.value, ui.clips);
-  ui.clips = remembered;
-  room.patchScene(patch, { view: ui.active.value, at });
-}
-
-/** Key K: the caps of all clip planes that cut. */
-export function toggleCaps(room, ui, at) {
-  const patch = toggledCaps(room.plan.value, room.scene.value);
-  if (patch) room.patchScene(patch, { view: ui.active.value, at });
-  else ui.notify('ok', say.nothingToCap, 'clip');
 }

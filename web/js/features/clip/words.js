@@ -1,25 +1,10 @@
-// The words of clip planes in the tree and in panes.
+// The words of clip planes: their section, their names, keys.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('clip', {
   section: 'Clip',
   nOn: '{n} on',
   off: 'off',
-  withCap: 'with cap',
-  withoutCap: 'without cap',
-  at: '{plane}: {position}',
-  clipPlane: 'Clip plane {plane}',
-  uncut: 'Do not cut here',
-  cut: 'Cut here; at first through the crosshair',
-  positionOf: 'Position of {plane} in mm',
-  capOf: 'Cap of {plane}',
-  leaveOpen: 'The cut is closed with a cap; leave it open',
-  close: 'Close the cut with a cap',
-  caps: 'Caps show',
-  capsShow: 'Caps show {what}',
-  allOff: 'All off',
-  onAgain: 'On again',
-  allToCrosshair: 'All to crosshair',
   nothingToCap: 'No clip plane cuts, so there is nothing to cap.',
   axial: 'Axial',
   coronal: 'Coronal',

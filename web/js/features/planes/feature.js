@@ -1,6 +1,6 @@
 // Oblique planes; the lines in which they and clip planes cut the slices of panes.
 import { later, laterPart } from '../../parts/lazy.js';
-import { hasClips, isClipped } from '../clip/clip_rows.js';
+import { hasClips, isClipped } from '../clip/clip_switch.js';
 import { obliqueNote, obliqueRows, obliquesOf } from './oblique_rows.js';
 import { say } from './words.js';
 
