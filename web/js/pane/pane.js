@@ -16,14 +16,16 @@ import { Painter } from './painter.js';
 import { PointerReader } from './pointer.js';
 import { millimetres, nameSome, number, windowText } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
+import { known, later } from '../parts/lazy.js';
 import { mount, variables } from '../parts/mount.js';
 import { hasOwnRegions, orientation } from './orientation_menu.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
-import { readOut, spoken } from './read_out.js';
+import { spoken } from './pointed_words.js';
 import { say } from './words.js';
 import { boxOf, pixelRatio } from '../parts/page_look.js';
 
+export const card = later(() => import('./read_out.js'));
 const resizeMs = 120;
 const maxSide = 4096;
 const lowPane = 300; // px; lower slice panes show legends only while they are active
@@ -99,7 +101,7 @@ export class Pane {
     addEventListener('keydown', onKey);
     return [
       () => removeEventListener('keydown', onKey),
-      mount(host, () => readOut({ room: this.#room, pointed }, host)),
+      mount(host, () => (pointed.shown.value ? known(card)?.readOut({ room: this.#room, pointed }, host) : nothing)),
       effect(() => {
         const header = this.#view.painted.value;
         if (header) pointed.picture(`${header.scene_revision} ${header.clip_from_lps_mm}`);

@@ -2,6 +2,7 @@
 import { signal } from '../../lib/signals-core.js';
 
 export const restMs = 150;
+export const shownMs = 3000; // after the pointer's last move
 const slackPx = 3;
 
 const browserClock = { setTimeout: (callback, ms) => setTimeout(callback, ms), clearTimeout: (timer) => clearTimeout(timer) };
@@ -11,6 +12,8 @@ export class Pointed {
   #clock;
   #place = null; // where the pointer is; null: not over the picture, or pressed
   #timer = 0;
+  #end = 0; // timer; 0: nothing is shown of this rest
+  #left = null; // where the card has gone from under a pointer that rests
   #isAsking = false;
   #isDue = false;
   #picture = ''; // names the picture that the facts are of
@@ -29,7 +32,7 @@ export class Pointed {
   hover(x, y) {
     const shown = this.shown.peek();
     const isHere = shown && Math.hypot(x - shown.x, y - shown.y) <= slackPx;
-    if (isHere) return;
+    if (isHere || (this.#left && Math.hypot(x - this.#left.x, y - this.#left.y) <= slackPx)) return;
     this.hide();
     this.#place = { x, y };
     this.#wait();
@@ -43,6 +46,9 @@ export class Pointed {
 
   hide() {
     this.#clock.clearTimeout(this.#timer);
+    this.#clock.clearTimeout(this.#end);
+    this.#end = 0;
+    this.#left = null;
     this.#place = null;
     this.#isDue = false;
     if (this.shown.peek()) this.shown.value = null;
@@ -55,6 +61,13 @@ export class Pointed {
     if (!this.#place) return;
     this.shown.value = null;
     this.#wait();
+  }
+
+  /** A pointer that only lies there asks for nothing more until it moves. */
+  #leave() {
+    const place = this.#place;
+    this.hide();
+    this.#left = place;
   }
 
   #wait() {
@@ -77,6 +90,7 @@ export class Pointed {
       if (this.#place) this.#rest();
     } else if (place === this.#place && picture === this.#picture && facts) {
       this.shown.value = { ...place, isHeld: false, facts };
+      this.#end ||= this.#clock.setTimeout(() => this.#leave(), shownMs); // not anew for another picture: that may be the presenter's
     }
   }
 }

@@ -18,7 +18,7 @@ import { Answer } from '../parts/answer.js';
 import { later } from '../parts/lazy.js';
 import { mount } from '../parts/mount.js';
 import { pageFactor } from '../parts/page_look.js';
-import { Pane } from '../pane/pane.js';
+import { Pane, card as pointedCard } from '../pane/pane.js';
 import { giveOblique } from '../pane/pane_kind.js';
 import { listenKeys } from './page_keys.js';
 import { paneSwitch } from './pane_switch.js';
@@ -226,6 +226,7 @@ function loadBeforeClicks() {
     abort.abort();
     loadBlocks();
     card.load();
+    pointedCard.load();
     undoNames.load();
     splitters.load();
   };

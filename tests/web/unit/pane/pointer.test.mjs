@@ -174,8 +174,10 @@ function resting() {
     },
   };
   const pointed = new Pointed((x, y) => new Promise((resolve, reject) => asked.push({ x, y, resolve, reject })), clock);
-  const pass = () => {
-    for (const timer of timers.splice(0, timers.length, ...timers.map(({ ms }) => ({ ms, callback: () => {} })))) timer.callback();
+  const pass = (time = restMs) => {
+    const due = timers.filter(({ ms }) => ms === time).map(({ callback }) => callback);
+    for (const timer of timers) if (timer.ms === time) timer.callback = () => {};
+    for (const callback of due) callback();
   };
   const settle = () => new Promise((resolve) => setImmediate(resolve));
   return { pointed, asked, pass, settle, timers, facts: () => pointed.shown.value?.facts };
@@ -199,6 +201,31 @@ test('facts are asked once the pointer rests, and shown where it rests', async (
   assert.ok(pointed.shown.value, 'a hand is never quite still');
   pointed.hover(60, 60);
   assert.equal(pointed.shown.value, null);
+});
+
+test('the card goes after 3 s of rest, and no picture of the presenter brings it back until the pointer moves', async () => {
+  const { pointed, asked, pass, settle, facts } = resting();
+  const answer = async () => {
+    asked.at(-1).resolve({ of: asked.length });
+    await settle();
+  };
+  pointed.hover(10, 10);
+  pass();
+  await answer();
+  pointed.picture('the next slice');
+  pass();
+  await answer();
+  assert.deepEqual(facts(), { of: 2 }, 'of the new picture, within the 3 s');
+  pass(3000);
+  assert.equal(facts(), undefined);
+  pointed.picture('the slice after');
+  pointed.hover(12, 10);
+  pass();
+  assert.equal(asked.length, 2, 'a hand is never quite still');
+  pointed.hover(20, 10);
+  pass();
+  await answer();
+  assert.deepEqual(facts(), { of: 3 });
 });
 
 test('one question at a time, and then the newest place', async () => {
