@@ -187,7 +187,7 @@ static cJSON *make_view(const struct plan *plan, const struct render_arguments *
     return changed;
 }
 
-/* What the pictures of a command line have in common. */
+/* Drawing one or more pictures of a command line. */
 struct drawing {
     const struct render_arguments *arguments;
     struct derive *derived;

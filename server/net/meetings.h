@@ -13,7 +13,7 @@ enum {
 typedef void net_meeting_done(void *context, const struct meeting *meeting, const struct problem *problem);
 
 size_t net_n_meetings(const struct net *net);
-/* As it was last brought up to date; NULL: it is still being written. */
+/* A meeting as it was last brought up to date; NULL: it is still being written. */
 const struct meeting *net_meeting_at(const struct net *net, size_t index);
 /* With what its rooms know brought up to date: attendance, decisions, words of plans. Good until the next call. */
 const struct meeting *net_meeting_find(struct net *net, const char *id); /* NULL: there is none */

@@ -57,5 +57,8 @@ void table_end(struct paper *paper, cJSON *table, const char *without);
 void front_add(struct paper *paper);
 void irradiation_add(struct paper *paper);
 void parts_add(struct paper *paper);
-const cJSON *paper_treatment(const struct paper *paper); /* the shown treatment plan; NULL: there is none */
+/* The part of a list of the kept plan with this id; NULL: there is none. */
+const cJSON *paper_part_of(const struct paper *paper, const char *list, const char *id);
+const cJSON *paper_shown_dose(const struct paper *paper); /* NULL: there is none */
+const cJSON *paper_treatment(const struct paper *paper);  /* the shown treatment plan; NULL: there is none */
 const char *region_name(const struct paper *paper, const char *id);

@@ -23,17 +23,6 @@ static double number_of(const cJSON *object, const char *name)
     return json_number(object, name, NAN);
 }
 
-const char *region_name(const struct paper *paper, const char *id)
-{
-    const cJSON *region;
-    cJSON_ArrayForEach(region, get(paper->plan, "regions"))
-    {
-        if (strcmp(text_of(region, "id"), id) == 0)
-            return text_of(region, "name")[0] ? text_of(region, "name") : id;
-    }
-    return id;
-}
-
 static const char *word_of(const char *const (*words)[2], size_t n, const char *id)
 {
     for (size_t i = 0; i < n; i++)

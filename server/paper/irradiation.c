@@ -45,9 +45,7 @@ static void add_end(struct paper *paper, const cJSON *irradiation)
     char units[PAPER_NUMBER], minutes[PAPER_NUMBER];
     const bool has_minutes = isfinite(number_of(irradiation, "minutes"));
     if (!json_text(irradiation, "first")) {
-        block_text(paper,
-                   written_format("No known limit ends the irradiation. %.300s",
-                                  text_of(irradiation, "reason")),
+        block_text(paper, written_format("No known limit ends the irradiation. %.300s", text_of(irradiation, "reason")),
                    "warn");
         return;
     }

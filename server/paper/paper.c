@@ -10,41 +10,14 @@ static const char research[] = "Research use only. Not a medical device; not for
 static const char open_words[] =
     "This server is open to everybody who reaches it. Anybody sees every plan here, under any name. Nothing can be signed.";
 
-/* The part of a list of the kept plan with this id; NULL: it has none. */
-static const cJSON *part_of(const struct paper *paper, const char *list, const char *id)
-{
-    const cJSON *part;
-    cJSON_ArrayForEach(part, cJSON_GetObjectItemCaseSensitive(paper->plan, list))
-    {
-        const char *of = json_text(part, "id");
-        if (id && of && strcmp(of, id) == 0)
-            return part;
-    }
-    return NULL;
-}
-
-static const cJSON *shown_dose(const struct paper *paper)
-{
-    return part_of(paper, "doses", json_text(cJSON_GetObjectItemCaseSensitive(paper->kept, "dose"), "id"));
-}
-
-/* As the page chooses them (web/js/room/identity.js): by the shown dose, else as the plan's document says. */
-const cJSON *paper_treatment(const struct paper *paper)
-{
-    const cJSON *list = cJSON_GetObjectItemCaseSensitive(paper->plan, "treatment_plans");
-    const double of_dose = json_number(shown_dose(paper), "plan", -1);
-    const cJSON *found = of_dose >= 0 && of_dose < 1e6 ? cJSON_GetArrayItem(list, (int)of_dose) : NULL;
-    return found ? found : cJSON_GetArrayItem(list, (int)json_number(paper->plan, "shown_plan", 0));
-}
-
 static int shown_patient(const struct paper *paper)
 {
     const char *image = json_text(cJSON_GetObjectItemCaseSensitive(paper->kept, "fits"), "image");
     double index = json_number(paper->plan, "shown_patient", -1);
     if (!(index >= 0))
-        index = json_number(shown_dose(paper), "patient", -1);
+        index = json_number(paper_shown_dose(paper), "patient", -1);
     if (!(index >= 0))
-        index = json_number(part_of(paper, "images", image), "patient", 0);
+        index = json_number(paper_part_of(paper, "images", image), "patient", 0);
     return index >= 0 && index < 1e6 ? (int)index : 0;
 }
 
