@@ -45,7 +45,7 @@ bool axes_of_scene(const struct plan *plan, const struct scene *scene, struct ve
 }
 
 /* In parts of the picture's shorter side. */
-static const double corner_aside = 0.13, corner_up = 0.19, arm_length = 0.06, letter_at = 0.085;
+static const double corner_aside = 0.15, corner_up = 0.2, arm_length = 0.075, letter_at = 0.105;
 
 void axes_in_corner(const struct camera *camera, double width_px, double height_px, struct axes_corner *corner)
 {

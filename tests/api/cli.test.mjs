@@ -77,6 +77,10 @@ describe('beamroom', () => {
       [['render', plan, '-o', 'x.jpg', '--along', 'mid'], /--along 'mid' is not a number/],
       [['render', plan, '-o', 'x.jpg', '--ring', '40', '--kind', 'axial'], /--ring is of the beam's-eye view, and --kind is axial/],
       [['render', plan, '-o', 'x.jpg', '--window', '40'], /--window '40'/],
+      [['render', plan, '-o', 'x.jpg', '--window', '40/400/bright'], /--window '40.400.bright' is not of the form 40.400, or 40.400.1.4/],
+      [['render', plan, '-o', 'x.jpg', '--light', '31'], /--light '31' is not of the form 31,35/],
+      [['render', plan, '-o', 'x.jpg', '--light', 'patient:1,2,x'], /--light 'patient:1,2,x'/],
+      [['render', plan, '-o', 'x.jpg', '--ambient', 'much'], /--ambient 'much' is not a number/],
       [['render', plan, '-o', 'x.jpg', '--from', '0,91'], /--from '0,91'/],
     ]) {
       const { status, stdout, stderr } = beamroom(...args);

@@ -296,8 +296,8 @@ static void axes_stand_through_the_crosshair_as_a_box_or_in_the_corner(void **st
     assert_true(is_painted(box, without, 40, 0, SCALE) && is_painted(box, without, 0, -40, SCALE) &&
                 is_painted(box, without, -40, 40, SCALE));
     assert_false(is_painted(box, without, 0, 0, SCALE) || is_painted(box, without, 46, 0, SCALE));
-    /* in the corner: 0.13 of 300 pixels from the left, 0.19 from below, arms of 0.06: L to the right, S up */
-    const double left = (0.13 * 300 - SHOTS_WIDTH / 2.0) / SCALE, low = (0.19 * 300 - SHOTS_HEIGHT / 2.0) / SCALE;
+    /* in the corner: 0.15 of 300 pixels from the left, 0.2 from below, arms of 0.075: L to the right, S up */
+    const double left = (0.15 * 300 - SHOTS_WIDTH / 2.0) / SCALE, low = (0.2 * 300 - SHOTS_HEIGHT / 2.0) / SCALE;
     assert_true(is_painted(corner, without, left + 12 / SCALE, low, SCALE));
     assert_true(is_painted(corner, without, left, low + 12 / SCALE, SCALE));
     assert_false(is_painted(corner, without, left - 6, low, SCALE) ||

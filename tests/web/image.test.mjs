@@ -159,6 +159,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.locator('.block.lights').getByRole('button', { name: 'As usual' }).click();
     await until(lights, ({ azimuth_deg }) => azimuth_deg === 31.2, 20000);
     await shoot(page, 'image-lights');
+    assert.deepEqual(await axe(page), []);
     await page.context().close();
   });
 

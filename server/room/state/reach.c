@@ -72,6 +72,14 @@ static bool planes_reach(const cJSON *view, const char *own, const cJSON *before
     return false;
 }
 
+/* True if the patient axes of 3-D views stand through the crosshair, whose place the slices have. */
+static bool axes_follow_crosshair(const cJSON *scene)
+{
+    const cJSON *axes = field(scene, "axes");
+    const char *form = json_text(axes, "form");
+    return json_flag(axes, "visible", false) && form && strcmp(form, "crosshair") == 0;
+}
+
 static bool image_reaches(const cJSON *view, const cJSON *before, const cJSON *after, const cJSON *patch)
 {
     static const char *const in_3d[] = { "volume", "clipped", "cull_below", NULL };
@@ -82,7 +90,8 @@ static bool image_reaches(const cJSON *view, const cJSON *before, const cJSON *a
         if (!differs(was, is))
             continue;
         if (cJSON_IsObject(item) && strcmp(name, "slices") == 0) {
-            if (planes_reach(view, slice_of(view, after), was, is, item))
+            if ((is_3d(view) && axes_follow_crosshair(after)) ||
+                planes_reach(view, slice_of(view, after), was, is, item))
                 return true;
         } else if (cJSON_IsObject(item) && strcmp(name, "obliques") == 0) {
             if (slice_of(view, before) != slice_of(view, after) ||

@@ -39,7 +39,7 @@ export function cubeSides(matrix) {
 }
 
 const reach = 0.6; // half the length of a patient axis, in sizes of the plan's box
-const corner = { aside: 0.13, up: 0.19, letter: 0.085 }; // in parts of the picture's shorter side
+const corner = { aside: 0.15, up: 0.2, letter: 0.105 }; // in parts of the picture's shorter side
 
 /**
  * Where the letters of the patient's axes are in a picture, 0 to 1, as core/scene/axes.h has them; those behind the eye are left out.

@@ -82,6 +82,7 @@ static void what_is_drawn_in_3d_only_reaches_3d_and_measures_reach_nothing(void 
     assert_string_equal(reached("{\"axes\":{\"visible\":true}}"), "3b");
     assert_string_equal(reached("{\"image\":{\"volume\":{\"visible\":true}}}"), "3b");
     assert_string_equal(reached("{\"image\":{\"cull_below\":5}}"), "3b");
+    assert_string_equal(reached("{\"lights\":{\"ambient\":0.5}}"), "3b");
     assert_string_equal(reached("{\"measures\":{\"m\":{\"kind\":\"angle\"}}}"), "");
 }
 
@@ -100,6 +101,15 @@ static const char *reached_after(const char *first, const char *patch_text)
     cJSON_Delete(patch);
     cJSON_Delete(merged);
     return reached_in(kept, patch_text);
+}
+
+static void axes_through_the_crosshair_go_with_it_in_3d(void **state)
+{
+    (void)state;
+    static const char moved[] = "{\"image\":{\"slices\":{\"coronal\":{\"position_mm\":9}}}}";
+    assert_string_equal(reached_after("{\"axes\":{\"visible\":true,\"form\":\"crosshair\"}}", moved), "3bc");
+    assert_string_equal(reached_after("{\"axes\":{\"visible\":true,\"form\":\"box\"}}", moved), "c");
+    assert_string_equal(reached_after("{\"axes\":{\"visible\":false,\"form\":\"crosshair\"}}", moved), "c");
 }
 
 static void a_change_of_dose_reaches_exactly_the_pictures_that_show_it(void **state)
@@ -270,6 +280,7 @@ int main(void)
         cmocka_unit_test(a_slice_that_moves_reaches_its_own_pane_and_3d_where_it_is_shown_there),
         cmocka_unit_test(an_oblique_plane_reaches_its_own_pane_and_3d_where_it_is_shown_there),
         cmocka_unit_test(what_is_drawn_in_3d_only_reaches_3d_and_measures_reach_nothing),
+        cmocka_unit_test(axes_through_the_crosshair_go_with_it_in_3d),
         cmocka_unit_test(a_change_of_dose_reaches_exactly_the_pictures_that_show_it),
         cmocka_unit_test(beams_reach_what_lies_along_and_across_them_and_other_pictures_where_they_are_drawn),
         cmocka_unit_test(tracks_reach_views_into_space_while_they_are_shown),

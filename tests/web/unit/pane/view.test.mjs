@@ -191,8 +191,8 @@ test('a side of the cube lies where its letter stands at the edge of the picture
     corner.map(({ letter }) => letter),
     ['L', 'P', 'S'],
   );
-  // 0.13 and 0.19 of 200 px from left and below, letters 0.085 of it away: P to the left, S up
-  near([corner[1].x, corner[1].y, corner[2].x, corner[2].y], [(26 - 17) / 400, 1 - 38 / 200, 26 / 400, 1 - 55 / 200], 1e-6);
+  // 0.15 and 0.2 of 200 px from left and below, letters 0.105 of it away: P to the left, S up
+  near([corner[1].x, corner[1].y, corner[2].x, corner[2].y], [(30 - 21) / 400, 1 - 40 / 200, 30 / 400, 1 - 61 / 200], 1e-6);
 });
 
 test('rolling turns the picture about its middle and nothing else', () => {

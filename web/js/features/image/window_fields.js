@@ -9,7 +9,7 @@ import { colorMaps } from './color_maps.js';
 import { say } from './later_words.js';
 
 const narrowest = 1e-15; // proto/scene.json, also of gamma
-const [leastGamma, mostGamma] = [0.2, 5];
+const [leastGamma, mostGamma] = [0.25, 5];
 
 /** Formats a value with as many figures as tell the greys of a window of this width apart. */
 const shown = (value, width) => Number(value.toFixed(Math.min(Math.max(1, 3 - Math.floor(Math.log10(width))), 20)));
