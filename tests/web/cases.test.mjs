@@ -30,7 +30,7 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     return page;
   }
   const title = (page) => page.locator('.banner').textContent();
-  const chip = (page) => page.locator('.meeting-chip');
+  const chip = (page) => page.locator('.room-chip:visible');
   const isIn = (page, n) =>
     chip(page)
       .locator('b', { hasText: `${n}/3` })
@@ -139,7 +139,18 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
   it('at the next case that is open to them the one who waited is back by themselves, also after a reload', async () => {
     await pages.rae.reload();
     await pages.rae.locator('h1', { hasText: 'Case 2 is not open to you' }).waitFor();
-    await chip(pages.pat).locator('.tool').click();
+    await pages.pat.getByRole('tab', { name: 'Record' }).click();
+    await pages.pat.locator('.record-form select[name="decision"]').selectOption('reject');
+    await pages.pat.locator('#picture-1').focus();
+    await pages.pat.keyboard.press('Shift+N');
+    const writing = pages.pat.locator('.case-line', { hasText: 'A decision is being written here' });
+    await writing.waitFor();
+    assert.deepEqual(await axe(pages.pat), []);
+    await writing.locator('button', { hasText: 'Stay here' }).click();
+    await writing.waitFor({ state: 'detached' });
+    assert.equal((await agenda()).case, 2, 'nothing moves while it is asked');
+    await pages.pat.locator('.record-form select[name="decision"]').selectOption('');
+    await chip(pages.pat).locator('.chip-main').click();
     const rows = pages.pat.locator('.meeting-card li');
     await rows.nth(2).waitFor();
     assert.match(await rows.nth(0).textContent(), /left open/);
@@ -181,7 +192,7 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     await pages.pat.keyboard.press('Shift+N');
     await pages.pat.locator('.toast', { hasText: 'This is the last case' }).waitFor();
     await api(`/meetings/${meeting}/end`, 'pat', 'POST', {});
-    await chip(pages.ola).locator('.tool').click();
+    await chip(pages.ola).locator('.chip-main').click();
     await pages.ola.locator('.meeting-card', { hasText: 'The meeting is over' }).waitFor();
   });
 

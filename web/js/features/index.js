@@ -38,6 +38,7 @@ import { tracks } from './tracks/feature.js';
  * @property {(world, act) => unknown} [panesMenu] at the end of the menu of the panes
  * @property {(world) => ({name, place, menu}|null)} [bannerPlan] the name of the shown plan, where it is not the folder's
  * @property {(world) => unknown} [bannerStart] @property {(world) => unknown} [bannerName] below the plan's name @property {(world) => unknown} [bannerFacts]
+ * @property {(world) => unknown} [chip] in the room chip before its words @property {(world) => unknown} [chipCard] at the top of its card
  * @property {(world) => unknown} [planTop] in the inspector's Plan above the parts @property {(world) => unknown} [planParts] below them
  * @property {(world) => unknown} [probeTool] in the head of Probe @property {(world) => unknown} [probe] below it
  * @property {(world) => string} [here] words on the crosshair's place

@@ -1,6 +1,7 @@
 // The room chip: who presents, whether this member follows or is on their own, and what can be done about it.
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect, untracked } from '../../lib/signals-core.js';
+import { partsOf } from '../features/index.js';
 import { keyMark } from '../parts/fields.js';
 import { dayTime } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
@@ -83,7 +84,7 @@ export function roomChip(world, place) {
   return html`<span class="anchor room-chip in-${place}" role="group" aria-label=${say.room} data-standing=${room.following.standing.value} ?data-replay=${room.recording.replay.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
     <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title=${say.whoIsHere} @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
       ${room.recording.running.value ? html`<b class="chip-recorded">${say.recorded}</b>` : nothing}
-      <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
+      ${partsOf('chip', world)}<span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.command ? keyMark(ui.keys.text(act.command)) : nothing}</button>` : nothing}
-    ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label=${say.membersOf}>${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
+    ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label=${say.membersOf}>${partsOf('chipCard', world)}${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
 }

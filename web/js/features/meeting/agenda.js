@@ -30,9 +30,9 @@ function standing({ meeting, ui }, told) {
   if (told.over) return html`<p class="dim">${say.meetingOver}</p>`;
   if (!told.n_now) return html`<p class="dim">${say.notBegun}</p>`;
   if (told.now !== told.here)
-    return html`<p class="case-standing"><span>${say.meetingAt({ n: told.n_now })}</span>${told.open ? html`<button class="primary" @click=${along}>${say.goAlong}</button>` : nothing}</p>`;
+    return html`<p class="case-standing"><span>${say.meetingAt({ n: told.n_now })}</span>${told.open ? html`<button @click=${along}>${say.goAlong}</button>` : nothing}</p>`;
   if (!told.may_advance || told.n_now === told.of) return nothing;
-  return html`<p class="case-standing"><button class="primary" title=${say.nextIs} @click=${() => next()}>${say.next}${keyMark(ui.keys.text('nextCase'))}</button></p>`;
+  return html`<p class="case-standing"><button title=${say.nextIs} @click=${() => next()}>${say.next}${keyMark(ui.keys.text('nextCase'))}</button></p>`;
 }
 
 export function agenda(world) {

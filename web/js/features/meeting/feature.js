@@ -30,5 +30,6 @@ export const meeting = {
   },
   start,
   keys: { nextCase: (world) => world.meeting.peek()?.next() },
-  strip: { meet: (world) => code.loaded.value?.chip(world) },
+  chip: (world) => code.loaded.value?.chip(world),
+  chipCard: (world) => code.loaded.value?.chipCard(world),
 };

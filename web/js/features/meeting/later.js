@@ -1,16 +1,15 @@
 // The meeting that the room is a case of: how it stands, going on to the next case, the card between two patients, waiting outside. Loaded when the server
 // tells of a meeting.
 import { html, nothing } from '../../../lib/lit-html.js';
-import { effect, signal } from '../../../lib/signals-core.js';
+import { effect, signal, untracked } from '../../../lib/signals-core.js';
 import { ofMember } from '../../net/api.js';
-import { icon } from '../../parts/icons.js';
 import { agenda } from './agenda.js';
 import { overlay, showCard } from './card.js';
 import { say } from './later_words.js';
 
 const askedS = 10;
-const popover = 'meeting';
 const topic = 'meeting';
+const isShown = (popover) => popover.startsWith('room-'); // the card of the room chip
 
 /** A form for a decision in which something stands. */
 export function isDecisionWritten(root = document) {
@@ -55,7 +54,7 @@ export function join(world) {
     if (message.type === 'meeting') {
       told.value = message;
       waits.value = message.waits ? { n: message.n_now, of: message.of } : null;
-      if (ui.popover.peek() === popover) void look();
+      if (isShown(ui.popover.peek())) void look();
     } else if (message.type === 'meeting.case') taken(message);
   };
 
@@ -112,28 +111,27 @@ export function join(world) {
     const { until } = asked.value ?? {};
     if (until && ui.now.value >= until) asked.value = null;
   });
+  const stopLook = effect(() => {
+    if (isShown(ui.popover.value)) untracked(() => void look());
+  });
   const stopOverlay = overlay(world, meeting);
   hidden = () => {
     hidden = null;
     stopTick();
+    stopLook();
     stopOverlay();
   };
   return meeting;
 }
 
-/** In the strip: which case this is; its card has the agenda and the way on. */
-export function chip(world) {
-  const { ui } = world;
-  const meeting = world.meeting.value;
-  const told = meeting?.told.value;
+/** In the room chip: which case this is. */
+export function chip({ meeting }) {
+  const told = meeting.value?.told.value;
   if (!told) return nothing;
   const isElsewhere = !told.over && told.n_now > 0 && told.now !== told.here;
-  const isOpen = ui.popover.value === popover;
-  const open = () => {
-    ui.toggle(popover);
-    if (!isOpen) void meeting.look();
-  };
-  return html`<span class="anchor meeting-chip">
-    <button class="tool" tabindex="-1" aria-haspopup="dialog" aria-expanded=${isOpen} aria-label=${say.chipIs(told)} title=${say.chipIs(told)} ?data-elsewhere=${isElsewhere} @click=${open}>${icon('table')}<b>${say.caseShort(told)}</b></button>
-    ${isOpen ? html`<div class="popover meeting-card" role="dialog" aria-label=${say.meetingIs}>${agenda(world)}</div>` : nothing}</span>`;
+  return html`<b class="chip-case" title=${say.caseOf(told)} ?data-elsewhere=${isElsewhere}>${say.caseShort(told)}</b> `;
 }
+
+/** At the top of the chip's card: the agenda and the way on. */
+export const chipCard = (world) =>
+  world.meeting.value?.told.value ? html`<section class="meeting-card" aria-label=${say.meetingIs}>${agenda(world)}</section>` : nothing;

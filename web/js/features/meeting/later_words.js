@@ -4,7 +4,6 @@ import { sentences } from '../../parts/sentences.js';
 export const say = sentences('meeting.later', {
   caseOf: 'Case {n} of {of}',
   caseShort: '{n}/{of}',
-  chipIs: 'Case {n}/{of}: {name}',
   meetingIs: 'The meeting and its cases',
   meetingAt: 'The meeting is at case {n}',
   meetingOver: 'The meeting is over',
