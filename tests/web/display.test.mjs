@@ -1,193 +1,291 @@
-// The page of a display: the presenter's picture on the screen of a meeting room.
+// The page of a wall: what a room shows, at the wall's own pixels, on the screen of a meeting room.
 import { after, before, describe, it } from 'node:test';
 import assert from 'node:assert/strict';
 import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, startWorld } from './browser.mjs';
+import { full, later, missing, shoot, startWorld } from './browser.mjs';
 
-/** Size and pixels of a canvas, as one text. */
-const pixels = (page, selector) =>
-  page.evaluate((of) => {
-    const canvas = document.querySelector(of);
-    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    let hash = 2166136261;
-    for (const byte of data) hash = Math.imul(hash ^ byte, 16777619);
-    return `${canvas.width} x ${canvas.height}: ${hash}`;
-  }, selector);
-const letters = (page) =>
-  page.evaluate(() => ['left', 'right', 'top', 'bottom'].map((edge) => document.querySelector(`.letter.${edge}`).textContent));
-const says = (page, words) => page.waitForFunction((start) => document.querySelector('.age').textContent.startsWith(start), words);
-const stateOf = (page) => page.locator('.age').getAttribute('data-state');
+const wallSize = { width: 1920, height: 1080 };
+const names = ['3-D', 'Axial', 'Sagittal', 'Coronal'];
 
-describe('the page of a display', { skip: missing && `${missing} is missing` }, () => {
-  let world, room, presenter, display;
+/** Until the pictures of these views stand still on the wall, drawn for the newest scene. */
+const drawn = (wall, views = [1, 2, 3, 4]) =>
+  wall.waitForFunction((numbers) => {
+    const { room } = globalThis.wall ?? {};
+    return numbers.every((n) => {
+      const { painted, behindSince } = room?.view(n) ?? {};
+      return painted?.value?.is_still && !behindSince.value;
+    });
+  }, views);
+const workedIn = (wall) => wall.evaluate(() => Number(document.querySelector('.wall-pane.worked-in')?.dataset.view ?? 0));
+const shown = (wall) =>
+  wall.evaluate(() =>
+    [...document.querySelectorAll('.wall-pane')]
+      .filter((pane) => !pane.hidden)
+      .sort((a, b) => a.style.order - b.style.order)
+      .map(({ dataset }) => Number(dataset.view)),
+  );
+const live = (wall, state) => wall.waitForFunction((is) => document.querySelector('.wall-live')?.dataset.state === is, state);
+const text = (wall, selector) => wall.locator(selector).innerText();
+
+/** Each picture: its pixels, those that it takes on the screen, those of the pane, those that the server drew. */
+const pictures = (wall) =>
+  wall.evaluate(() =>
+    [...document.querySelectorAll('.wall-pane')]
+      .filter((pane) => !pane.hidden)
+      .map((pane) => {
+        const [canvas, picture] = [pane.querySelector('canvas'), pane.querySelector('.wall-picture')];
+        const box = canvas.getBoundingClientRect();
+        const { width_px: width, height_px: height } = globalThis.wall.room.view(Number(pane.dataset.view)).painted.value;
+        return [
+          [canvas.width, canvas.height],
+          [box.width, box.height],
+          [picture.clientWidth, picture.clientHeight],
+          [width, height],
+        ];
+      }),
+  );
+
+/** Every text that is seen, with the px that its letters have on the screen. */
+const letterSizes = (wall) =>
+  wall.evaluate(() => {
+    const walker = document.createTreeWalker(document.querySelector('.wall'), NodeFilter.SHOW_TEXT);
+    const list = [];
+    while (walker.nextNode()) {
+      const element = walker.currentNode.parentElement;
+      const box = element.getBoundingClientRect();
+      if (!walker.currentNode.data.trim() || !box.width || !box.height || getComputedStyle(element).visibility === 'hidden') continue;
+      const scaled = element.closest('.picture');
+      const scale = scaled ? scaled.getBoundingClientRect().width / scaled.offsetWidth : 1;
+      list.push({ words: walker.currentNode.data.trim(), px: Number.parseFloat(getComputedStyle(element).fontSize) * scale });
+    }
+    return list;
+  });
+
+/** Turns the wheel over a pane of the presenter. */
+async function wheel(page, view, steps = 1) {
+  const box = await page.locator(`#picture-${view}`).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 3);
+  await page.mouse.wheel(0, 100 * steps);
+}
+
+describe('the page of a wall', { skip: missing && `${missing} is missing` }, () => {
+  let world, room, presenter, wall;
+  const patch = (scene) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', scene, { 'If-Match': '*' });
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
     presenter = await world.newPage(`rooms/${room}`, { viewport: { width: 1440, height: 900 } });
     await full(presenter);
-    display = await world.newPage(`display/${room}`, { viewport: { width: 1100, height: 700 } });
-    await says(display, 'Live');
+    wall = await world.newPage(`display/${room}`, { viewport: wallSize });
+    await drawn(wall);
   });
   after(async () => {
     if (world) world.daemon.child.kill('SIGCONT');
     await world?.stop();
   });
-  const shared = () => pixels(presenter, '[data-view="1"] canvas');
-  const same = () =>
-    until(
-      async () => [await pixels(display, 'canvas'), await shared()],
-      ([shown, sent]) => shown === sent,
-    );
 
-  it('shows what the presenter sees, with the letters of that picture, and follows', async () => {
-    await same();
-    const before = await letters(display);
-    assert.deepEqual(before, ['RA', 'LP', 'S', 'I'], 'three quarters from the left: anterior and right are on the left');
-    const old = await shared();
-    await presenter.getByRole('button', { name: 'Look from anterior' }).first().click();
-    await until(shared, (now) => now !== old);
-    await until(
-      () => letters(display),
-      (now) => now.join() === 'R,L,S,I',
-    );
-    await full(presenter);
-    await same();
-  });
-
-  it('lies whole on the screen, with no words over it but the letters', async () => {
-    for (const [width, height] of [
-      [1100, 700],
-      [1920, 1080],
-      [700, 900],
-    ]) {
-      await display.setViewportSize({ width, height });
-      const box = await until(
-        () =>
-          display.evaluate(() => {
-            const { left, top, right, bottom } = document.querySelector('canvas').getBoundingClientRect();
-            return {
-              left,
-              top,
-              right,
-              bottom,
-              head: document.querySelector('header').getBoundingClientRect().bottom,
-              foot: document.querySelector('footer').getBoundingClientRect().top,
-              ratio: (right - left) / (bottom - top),
-              own: document.querySelector('canvas').width / document.querySelector('canvas').height,
-            };
-          }),
-        ({ left, right, top, bottom, head, foot }) =>
-          right <= width && bottom <= foot && foot < height && (right - left > width - 3 || bottom - top > foot - head - 3),
-      ); // as large as it can be
-      assert.ok(box.left >= 0 && box.top >= box.head, JSON.stringify(box));
-      assert.ok(Math.abs(box.ratio / box.own - 1) < 0.01, `not stretched: ${JSON.stringify(box)}`);
+  it('shows four panes, each drawn at its own pixels, and nothing of it changes the presenter', async () => {
+    const all = await pictures(wall);
+    assert.equal(all.length, 4);
+    for (const [own, ...others] of all) {
+      for (const other of others) assert.deepEqual(other, own);
+      assert.ok(own[0] > 800 && own[1] > 400, `${own}`);
     }
-    assert.match(
-      await display.locator('footer').textContent(),
-      /crosshair, pointers, notes, measures and the legend of the dose are not in it/,
-    );
-    assert.match(await display.locator('h1').textContent(), new RegExp(`Snyder head · Room ${room} · 3-D`));
-    assert.deepEqual(await axe(display), []);
+    assert.deepEqual(await shown(wall), [1, 2, 3, 4]);
+    assert.deepEqual(await wall.locator('.wall-pane:not([hidden]) h2').allInnerTexts(), names);
+    await live(wall, 'live');
+    const ratios = await wall.evaluate(() => globalThis.wall.room.views.slice(0, 4).map(({ document }) => document.value.pixel_ratio));
+    assert.deepEqual(ratios, [1.4, 1.4, 1.4, 1.4], 'lines are 1.4 times as wide');
+    const size = await presenter.evaluate(() => globalThis.beamroom.stats().headers[2].full_px);
+    const [width, height] = await presenter.evaluate(() => {
+      const { width: w, height: h } = document.querySelector('[data-view="2"] canvas').getBoundingClientRect();
+      return [Math.round(w), Math.round(h)];
+    });
+    assert.deepEqual(size, [width, height]);
+    assert.deepEqual(await axe(wall), []);
   });
 
-  it('says of a draft that it is one, in the picture itself', async () => {
-    const amber = () =>
-      display.evaluate(() => {
-        const canvas = document.querySelector('canvas');
-        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width / 2, canvas.height / 8);
-        let n = 0;
-        for (let at = 0; at < data.length; at += 4) n += data[at] > 200 && data[at + 1] > 130 && data[at + 1] < 220 && data[at + 2] < 130;
-        return n;
-      });
-    const draft = (enabled) =>
-      call(
-        `${world.daemon.url}/api/v1/rooms/${room}/scene`,
-        'PATCH',
-        { beam: { draft: { enabled, line: { entry_mm: [0, -120, 0], target_mm: [0, 0, 0] } } } },
-        { 'If-Match': '*' },
+  it('shows what the presenter sees, from the same side', async () => {
+    await presenter.getByRole('button', { name: 'Look from anterior' }).first().click();
+    await until(
+      () => wall.locator('[data-view="1"] [data-letters]').getAttribute('data-letters'),
+      (letters) => letters === 'R L S I',
+    );
+    assert.equal(await workedIn(wall), 1);
+    await wheel(presenter, 2);
+    const slice = (page) =>
+      page.evaluate(() => (globalThis.wall?.room ?? globalThis.beamroom.room()).scene.value.image.slices.axial.position_mm);
+    await drawn(wall);
+    const shownAt = await text(wall, '[data-view="2"] .wall-where');
+    assert.equal(shownAt, await presenter.locator('[data-view="2"] .where').innerText());
+    assert.ok(Number.isFinite(await slice(wall)));
+  });
+
+  it('frames the pane that a wheel turns, within a second, and the foot names it', async () => {
+    for (const view of [3, 2, 4, 1]) {
+      const begun = performance.now();
+      await wheel(presenter, view);
+      await wall.waitForFunction((n) => document.querySelector('.wall-pane.worked-in')?.dataset.view === String(n), view, { polling: 20 });
+      assert.ok(performance.now() - begun < 1000, `${Math.round(performance.now() - begun)} ms`);
+      const name = names[view - 1];
+      await until(
+        () => text(wall, '.wall-foot'),
+        (words) => words.includes(`four panes; Reviewer 1 works in ${name}`),
       );
-    assert.equal(await amber(), 0);
-    await draft(true);
-    await until(amber, (n) => n > 50);
-    await display.screenshot({ path: 'build/test-artifacts/display-draft.png' });
-    await draft(false);
-    await until(amber, (n) => n === 0);
+    }
+    assert.equal(
+      await wall.evaluate(() => {
+        const { borderTopWidth, borderTopStyle } = getComputedStyle(document.querySelector('.worked-in'), '::after');
+        return `${borderTopWidth} ${borderTopStyle}`;
+      }),
+      '2px solid',
+    );
   });
 
-  it('goes with the pane that a wheel turns, though another one is active', async () => {
-    const box = await presenter.locator('#picture-2').boundingBox();
-    await presenter.mouse.move(box.x + box.width / 2, box.y + box.height / 3);
-    await presenter.mouse.wheel(0, 100);
-    await until(
-      () => display.locator('h1').textContent(),
-      (text) => text.endsWith('· Axial'),
+  it('has bars, legend, values, pointers with names and measures, and no letter under 15 px', async () => {
+    await patch({
+      dose: { lines: { visible: true }, wash: { visible: true } },
+      beam: { draft: { enabled: true, line: { entry_mm: [0, -120, 0], target_mm: [0, 0, 0] } } },
+      measures: { mine: { kind: 'distance', points: [{ at_mm: [-30, 20, 32.8] }, { at_mm: [10, 40, 32.8] }] } },
+      clip: { axial_high: { enabled: true, position_mm: 60 } },
+    });
+    const ben = await world.newPage(`rooms/${room}`, { viewport: { width: 1280, height: 720 } });
+    await full(ben, 2);
+    await ben.locator('#picture-2').focus();
+    await ben.keyboard.press('p');
+    const box = await ben.locator('#picture-2').boundingBox();
+    await ben.mouse.move(box.x + box.width * 0.4, box.y + box.height * 0.4);
+    await ben.mouse.move(box.x + box.width * 0.42, box.y + box.height * 0.42, { steps: 3 });
+    const label = wall.locator('[data-view="2"] .person-pointer text');
+    await label.waitFor();
+    assert.equal(await label.textContent(), 'Reviewer 2');
+    const places = await wall.evaluate(() => {
+      const pane = document.querySelector('[data-view="2"]');
+      const middle = (selector) => {
+        const { left, right } = pane.querySelector(selector).getBoundingClientRect();
+        return (left + right) / 2;
+      };
+      return [middle('.person-pointer .label rect'), middle('.person-pointer circle'), middle('.crosshair')];
+    });
+    assert.ok(places[0] < places[1], `the name stands left, the crosshair right: ${places}`);
+    await wall.locator('.wall-bar.draft').waitFor();
+    assert.match(await text(wall, '.wall-bar.draft'), /^Draft beam: the dose shown belongs to the planned beam\./);
+    await wall.locator('.wall-levels li').first().waitFor();
+    const labelPx = await wall.evaluate(() => {
+      const label = document.createElementNS('http://www.w3.org/2000/svg', 'text'); // of an isodose line: those of this plan run along the target, where none stands
+      label.setAttribute('class', 'halo dose-line-label');
+      document.querySelector('[data-view="2"] .overlay').append(label);
+      const px = Number.parseFloat(getComputedStyle(label).fontSize) * 1.4;
+      label.remove();
+      return px;
+    });
+    assert.ok(labelPx >= 15, `${labelPx}`);
+    const column = await text(wall, '.wall-column');
+    for (const words of ['Weighted total', 'Gy(w)', '100 % =', 'Regions', 'tumour', 'At the crosshair', 'Here', 'Reviewer 1', 'Reviewer 2'])
+      assert.ok(column.includes(words), `${words} in ${column}`);
+    assert.match(await text(wall, '.wall-top'), /^PHANTOM.*Reviewer 2 points.*Reviewer 1 presents.*Live.*\d\d:\d\d:\d\d$/s);
+    assert.match(await text(wall, '.wall-foot'), /patient right on screen left.*Research use/s);
+    assert.equal(await wall.locator('.clip-line').count(), 2, 'the clip plane in two slices');
+    assert.equal(await wall.locator('.clip-handle, input, a').count(), 0, 'nothing to be pressed');
+    await drawn(wall);
+    const small = (await letterSizes(wall)).filter(({ px }) => px < 14.99);
+    assert.deepEqual(small, []);
+    assert.deepEqual(await axe(wall), []);
+    await shoot(wall, 'wall');
+    await wall.setViewportSize({ width: 3840, height: 2160 });
+    await wall.waitForFunction(
+      () => globalThis.wall.room.view(2).painted.value?.full_px[0] > 1600 && globalThis.wall.room.view(2).painted.value.is_still,
     );
-    assert.match(await presenter.locator('.pane.active').getAttribute('data-view'), /^1$/);
-    await presenter.locator('#picture-1').focus();
-    await presenter.keyboard.press('ArrowLeft');
-    await until(
-      () => display.locator('h1').textContent(),
-      (text) => text.endsWith('· 3-D'),
+    assert.deepEqual(
+      (await letterSizes(wall)).filter(({ px }) => px < 29.9),
+      [],
+      'twice as large at 4K',
     );
-    await full(presenter);
+    for (const [own, ...others] of await pictures(wall)) for (const other of others) assert.deepEqual(other, own);
+    await shoot(wall, 'wall-4k');
+    await wall.setViewportSize(wallSize);
+    await ben.context().close();
+    await patch({ beam: { draft: { enabled: false } }, clip: { axial_high: { enabled: false } } });
+    await wall.locator('.wall-bar.draft').waitFor({ state: 'detached' });
   });
 
-  it('goes with the view that the presenter works in, unless its address names one', async () => {
-    const named = await world.newPage(`display/${room}?view=3d`, { viewport: { width: 900, height: 600 } });
-    await says(named, 'Live');
-    await presenter.locator('#picture-2').focus();
-    await presenter.keyboard.press('ArrowUp'); // the next slice
+  it('shows the pane worked in alone, or the presenter’s panes, as the presenter’s chip says; a reload changes nothing', async () => {
+    await presenter.locator('.in-strip .chip-main').click();
+    await presenter.getByRole('button', { name: 'the pane worked in' }).click();
     await until(
-      () => display.locator('h1').textContent(),
-      (text) => text.endsWith('· Axial'),
+      () => shown(wall),
+      (views) => views.length === 1,
     );
-    await full(presenter, 2);
+    await presenter.keyboard.press('Escape');
+    await wheel(presenter, 3);
+    const begun = performance.now();
     await until(
-      async () => [await pixels(display, 'canvas'), await pixels(presenter, '[data-view="2"] canvas')],
-      ([shown, sent]) => shown === sent,
+      () => shown(wall),
+      (views) => views.join() === '3',
     );
-    assert.deepEqual(await letters(display), ['R', 'L', 'A', 'P']);
-    assert.match(await named.locator('h1').textContent(), / · 3-D$/);
-    await presenter.locator('[aria-label="Maximise Coronal"]').click(); // the others are closed
+    assert.ok(performance.now() - begun > 300, 'it goes over after 0.6 s');
+    await drawn(wall, [3]);
+    const [[own, ...others]] = await pictures(wall);
+    for (const other of others) assert.deepEqual(other, own);
+    assert.ok(own[0] > 1600, 'over the whole wall');
+    await wall.reload();
+    await drawn(wall, [3]);
+    assert.deepEqual(await shown(wall), [3]);
+
+    await presenter.locator('.in-strip .chip-main').click();
+    await presenter.getByRole('button', { name: 'as the presenter' }).click();
+    await presenter.keyboard.press('Escape');
     await until(
-      () => display.locator('h1').textContent(),
-      (text) => text.endsWith('· Coronal'),
+      () => shown(wall),
+      (views) => views.join() === '1,2,3,4',
+    );
+    await presenter.locator('[aria-label="Maximise Coronal"]').click();
+    await until(
+      () => shown(wall),
+      (views) => views.join() === '4',
     );
     await presenter.locator('[aria-label="Restore Coronal"]').click();
-    await presenter.locator('#picture-1').focus();
-    await presenter.keyboard.press('ArrowLeft');
+    await presenter.locator('.in-strip .chip-main').click();
+    await presenter.locator('.roster-wall button', { hasText: 'four panes' }).click();
+    await presenter.keyboard.press('Escape');
     await until(
-      () => display.locator('h1').textContent(),
-      (text) => text.endsWith('· 3-D'),
+      () => shown(wall),
+      (views) => views.join() === '1,2,3,4',
     );
-    await full(presenter);
-    await same();
-    await named.close();
+    await drawn(wall);
   });
 
-  it('says when the connection is lost, and goes on when it is back', async () => {
+  it('greys its pictures when the connection is lost, and goes on when it is back', async () => {
     world.daemon.child.kill('SIGSTOP');
-    await says(display, 'Connection lost');
-    assert.equal(await stateOf(display), 'lost');
-    assert.match(await display.locator('.notice').textContent(), /^Connection lost\. The picture is of \d\d:\d\d:\d\d\.$/);
-    assert.deepEqual(await axe(display), []);
+    await live(wall, 'link');
+    await live(wall, 'disconnected');
+    assert.equal(await text(wall, '.wall-live'), 'Disconnected');
+    assert.match(await wall.evaluate(() => getComputedStyle(document.querySelector('.wall-pane canvas')).filter), /grayscale/);
+    assert.deepEqual(await axe(wall), []);
     world.daemon.child.kill('SIGCONT');
-    await says(display, 'Live');
-    await until(
-      () => display.locator('.notice').textContent(),
-      (text) => text === '',
-    );
-    await same();
+    await live(wall, 'live');
+    await drawn(wall);
+  });
+
+  later('comes back by itself after its renderer was killed', async () => {
+    const { json } = await call(`${world.daemon.url}/api/v1/plans`);
+    assert.ok(json);
+    await call(`${world.daemon.url}/api/v1/plans/phantom/close`, 'POST', {});
+    await call(`${world.daemon.url}/api/v1/plans/phantom/open`, 'POST', {});
+    await drawn(wall);
+    await live(wall, 'live');
   });
 
   it('names what it cannot show', async () => {
     const nowhere = await world.newPage('display/aaaa-aaaa');
+    await nowhere.locator('.wall-said').waitFor();
+    assert.match(await text(nowhere, '.wall-said'), /^This wall has ended: /);
+    const odd = await world.newPage('display/');
     await until(
-      () => nowhere.locator('.notice').textContent(),
-      (text) => /no room "aaaa-aaaa"/.test(text),
+      () => odd.locator('body').innerText(),
+      (words) => words.length > 0,
     );
-    assert.equal(await nowhere.locator('figure').isVisible(), false);
-    assert.deepEqual(world.errors, []);
+    assert.deepEqual([world.errors, world.refused], [[], []]);
   });
 });

@@ -148,20 +148,26 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     await page.getByRole('button', { name: 'Make and copy' }).click();
     const link = await made().inputValue();
     const wall = await visit(link.slice(world.daemon.url.length + 1));
-    await wall.locator('.age[data-state="live"]').waitFor();
+    await wall.locator('.wall-live[data-state="live"]').waitFor();
+    await wall.waitForFunction(() => globalThis.wall.room.views.slice(0, 4).every(({ painted }) => painted.value));
+    await wall.locator('.wall-column', { hasText: 'At the crosshair' }).waitFor();
     assert.equal(wall.url(), `${world.daemon.url}/display/${room}`);
     await page.locator('.people-here li', { hasText: 'wall' }).waitFor();
     await page
       .locator('.people-links tr', { hasText: 'wall' })
       .getByRole('button', { name: /^End it/ })
       .click();
-    await wall.locator('figure').waitFor({ state: 'hidden' });
-    assert.equal(await wall.evaluate(() => document.querySelector('canvas').width), 1, 'no picture of a patient stays');
-    assert.notEqual(await wall.locator('.notice').textContent(), '');
+    await wall.locator('.wall-said', { hasText: 'This wall has ended' }).waitFor();
+    const sides = await wall.evaluate(() => [...document.querySelectorAll('canvas')].map(({ width }) => width));
+    assert.ok(
+      sides.every((side) => side <= 16),
+      `no picture of a patient stays: ${sides}`,
+    );
+    assert.equal(await wall.locator('.wall-column').innerText(), '');
     await page.keyboard.press('Escape');
     await wall.context().close();
     const without = await visit(`display/${room}`);
-    await without.getByText('This display needs a link').waitFor();
+    await without.getByText('This wall needs a link').waitFor();
     await without.context().close();
   });
 

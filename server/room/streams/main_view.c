@@ -5,9 +5,8 @@
 
 #include "server/wire/json.h"
 
-void main_view_acted(struct member *member, int number)
+static void acted(struct member *member, int number)
 {
-    member->worked = number;
     if (!member->has_told_active)
         member->active = number;
 }
@@ -17,8 +16,20 @@ void main_view_patched(struct member *member, int number, const cJSON *patch)
     bool is_act = false;
     for (const cJSON *field = patch->child; field; field = field->next)
         is_act = is_act || strcmp(field->string, "size_px") != 0;
-    if (is_act)
-        main_view_acted(member, number);
+    if (!is_act)
+        return;
+    member->worked = number;
+    acted(member, number);
+}
+
+void main_view_scene_patched(struct member *member, int number, const cJSON *patch)
+{
+    /* what a drag, a wheel, a slider or a tap in a pane changes: not what a click in a list does */
+    static const char *const fields[] = { "image", "beam", "clip", "measures" };
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
+        if (cJSON_GetObjectItemCaseSensitive(patch, fields[i]))
+            member->worked = number;
+    acted(member, number);
 }
 
 void main_view_active(struct member *member, int number)

@@ -108,7 +108,7 @@ bool member_scene_patch(struct room *room, struct member *member, const struct m
     struct stream *acted = patch->view > 0 ? member->views[patch->view - 1].stream : NULL;
     if (acted) {
         acted->acted_us = room->now_us;
-        main_view_acted(member, (int)patch->view);
+        main_view_scene_patched(member, (int)patch->view, patch->patch);
     }
     return scene_apply_patch(room, patch->patch, member, (uint32_t)patch->input, problem);
 }

@@ -59,7 +59,7 @@ export class Connection extends EventTarget {
    * @param {(url: string) => WebSocket} world.makeSocket
    * @param {{now: () => number, setTimeout: Function, clearTimeout: Function}} world.clock
    * @param {() => Promise<boolean>} [world.isGone] whether the room no longer exists; called when a socket could not be opened
-   * @param {{name?: string, member?: string, secret?: string, link?: string, person?: string}} identity name and link for a new member, member and secret to come back as, person of this browser
+   * @param {{name?: string, member?: string, secret?: string, link?: string, person?: string, wall?: boolean}} identity name and link for a new member, member and secret to come back as, person of this browser
    */
   constructor(url, { makeSocket, clock, isGone = async () => false }, identity = {}) {
     super();
@@ -87,8 +87,16 @@ export class Connection extends EventTarget {
       if (socket !== this.#socket) return;
       wasOpen = true;
       this.#heardAt = this.#clock.now();
-      const { name, member, secret, link, person } = this.#identity;
-      this.#write({ type: 'hello', protocol, name, ...(member && { member, secret }), ...(link && { link }), ...(person && { person }) });
+      const { name, member, secret, link, person, wall } = this.#identity;
+      this.#write({
+        type: 'hello',
+        protocol,
+        name,
+        ...(member && { member, secret }),
+        ...(link && { link }),
+        ...(person && { person }),
+        ...(wall && { wall }),
+      });
     });
     socket.addEventListener('message', (event) => {
       if (socket === this.#socket) this.#receive(event.data);

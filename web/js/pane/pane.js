@@ -8,7 +8,6 @@ import { features, partsOf } from '../features/index.js';
 import { fidelity } from '../room/fidelity.js';
 import { heightOver, positionOf, reachOf, stepAcross } from '../room/obliques.js';
 import { crosshair, isLowWhite, shownImage } from '../room/plan.js';
-import { describe } from '../room/camera.js';
 import { isInSpace, isTilted, isTurnable } from '../room/kinds.js';
 import { letters } from './letters.js';
 import { overlay } from './overlay.js';
@@ -18,10 +17,11 @@ import { millimetres, nameSome, number, windowText } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { known, later } from '../parts/lazy.js';
 import { mount, variables } from '../parts/mount.js';
-import { hasOwnRegions, orientation } from './orientation_menu.js';
+import { orientation } from './orientation_menu.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
 import { spoken } from './pointed_words.js';
+import { whereWords } from './where.js';
 import { say } from './words.js';
 import { boxOf, pixelRatio } from '../parts/page_look.js';
 
@@ -179,23 +179,9 @@ export class Pane {
       <p class="hidden" id=${`caption-${n}`} aria-live="polite"></p>`;
   }
 
-  #where() {
-    const { kind } = this.#view;
-    const scene = this.#room.scene.value;
-    if (!scene || !this.#room.plan.value) return '';
-    if (kind === 'beam') return say.locked;
-    if (kind === 'beam-slice') return say.fromEntry({ distance: millimetres(scene.beam.slice.along_mm) });
-    if (isInSpace(kind)) {
-      const camera = this.#view.document.value && this.actions.camera;
-      return hasOwnRegions(this.#view) ? say.targetsOnly({ camera: describe(camera) }) : describe(camera);
-    }
-    const { plane } = this.actions;
-    return `${letters(plane.normal)} ${millimetres(positionOf(plane))}`;
-  }
-
-  /** Like #where, with the parts marked that a narrow pane leaves out. */
+  /** The words of where.js, with the parts marked that a narrow pane leaves out. */
   #whereInHead() {
-    const where = this.#where();
+    const where = whereWords(this.#room, this.#view, this.actions);
     const at = isTurnable(this.#view.kind) ? where.indexOf(', ') + 2 : 0;
     const to = where.endsWith(' mm') ? where.length - 3 : where.length;
     return html`<span class="roomy">${where.slice(0, at)}</span>${where.slice(at, to)}<span class="roomy">${where.slice(to)}</span>`;
@@ -338,7 +324,7 @@ export class Pane {
       this.#ui.active.value === this.#view.number && result
         ? [...spoken(result, this.#room.plan.value, this.#room.scene.value), ...partsOf('here', this.#world)]
         : [];
-    this.#lastCaption = [this.#view.name, this.#where(), ...facts].filter(Boolean).join(', ');
+    this.#lastCaption = [this.#view.name, whereWords(this.#room, this.#view, this.actions), ...facts].filter(Boolean).join(', ');
     return this.#lastCaption;
   }
 }

@@ -64,6 +64,7 @@ export class RoomState {
     this.seesIdentity = signal(false); // whether this member may ask whom the plan is of
     this.latencyMs = this.#latency.medianMs; // input to paint
     this.pingMs = signal(null);
+    this.wall = signal(null); // what walls show: the newest message wall
     this.views = allViews.map(({ kind, ...more }, index) => new ViewState(index + 1, kind, more));
     // Changes made while the connection is lost are kept, and sent when it is back.
     // Before the list of members has come, nobody knows whether a change is the room's or this member's own.
@@ -258,6 +259,11 @@ export class RoomState {
     this.#connection.rename(name);
   }
 
+  /** Chooses what the room's walls show. @param {'four'|'worked-in'|'presenter'} layout */
+  layOutWalls(layout) {
+    this.#connection.send({ type: 'wall.layout', layout });
+  }
+
   /** Tries to connect at once. */
   reconnect() {
     this.#connection.retryNow();
@@ -309,6 +315,9 @@ export class RoomState {
       },
       'pointer.at': () => this.pointers.moved(message),
       look: () => this.pointers.looked(message),
+      wall: () => {
+        this.wall.value = message;
+      },
       control: () => this.control.changed(message),
       acceptances: () => {
         this.acceptances.value = { known: message.known, items: message.items };

@@ -69,8 +69,9 @@ export class Sending {
       const patch = view.take(input);
       if (!patch) continue;
       this.#nextInput += 1;
-      if (this.#connection.send({ type: 'view.patch', view: view.number, patch, input }))
-        view.expect(input, this.#inputAt.get(view.number) ?? 0, now);
+      const at = this.#inputAt.get(view.number) ?? 0;
+      if (this.#connection.send({ type: 'view.patch', view: view.number, patch, input, ...(!at && { acted: false }) }))
+        view.expect(input, at, now);
       else this.#takeBack(view, input);
     }
     this.#inputAt.clear();

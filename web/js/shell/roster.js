@@ -82,6 +82,23 @@ const actions = ({ following, control, recording: { replay } }, watching) =>
       },
   ].filter(Boolean);
 
+const wallLayouts = [
+  ['four', say.wallFour, say.wallFourIs],
+  ['worked-in', say.wallOne, say.wallOneIs],
+  ['presenter', say.wallPresenter, say.wallPresenterIs],
+];
+
+/** For the presenter, what walls show, where there is one or was. */
+function walls(room) {
+  const now = room.wall.value?.layout ?? 'four';
+  const isThere = room.members.value.some(({ role, connected }) => role === 'wall' && connected !== false);
+  if (!room.following.isPresenting.value || room.recording.replay.value || !(isThere || now !== 'four')) return nothing;
+  return html`<div class="roster-wall" role="group" aria-label=${say.wallShows}><span class="dim">${say.wall}</span><div class="segment">${wallLayouts.map(
+    ([layout, word, about]) =>
+      html`<button class=${now === layout ? 'on' : ''} aria-pressed=${now === layout} title=${about} @click=${() => room.layOutWalls(layout)}>${word}</button>`,
+  )}</div></div>`;
+}
+
 /** The own name, which can be given or changed at any time. */
 function nameForm({ room, ui, ownName }) {
   const save = (event) => {
@@ -117,7 +134,7 @@ export function roster({ room, ui, ownName, api, watching }) {
   )}</ul>
     ${locked ? html`<p class="dim roster-locked">${say.lockedNote}</p>` : nothing}
     <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
-    ${recordings({ room, ui, api }, avatar)}
+    ${walls(room)}${recordings({ room, ui, api }, avatar)}
     ${ownName.isFixed.value ? nothing : nameForm({ room, ui, ownName })}`;
 }
 

@@ -13,6 +13,7 @@ const shared = {
   number: 1,
   plane: '',
   size_px: [900, 600],
+  pixel_ratio: 1,
   camera,
   beam: { along_mm: null, crosshair: true, aperture_mm: null },
   override: {},

@@ -12,8 +12,8 @@ export class DoseFacts {
   #api;
   #answers;
 
-  /** @param {import('../../room/room.js').RoomState} room @param {object} api of net/api.js @param {object} clock */
-  constructor(room, api, clock) {
+  /** @param {import('../../room/room.js').RoomState} room @param {object} api of net/api.js @param {object} clock @param {number} [labelPx] */
+  constructor(room, api, clock, labelPx) {
     this.#room = room;
     this.#api = api;
     this.#answers = this.#live(clock);
@@ -25,7 +25,7 @@ export class DoseFacts {
     /** the same of coverage and gamma, while they are shown */
     this.coverage = coverage.state;
     this.gamma = gamma.state;
-    this.labels = new DoseLabels(room, api, clock);
+    this.labels = new DoseLabels(room, api, clock, labelPx);
     /** by pin: {at, result, error} */
     this.pins = computed(() => pins.state.value.result ?? {});
     /** 100 % in the quantity's unit; null: not known */

@@ -6,17 +6,19 @@ import { pixelRatio } from '../../parts/page_look.js';
 export const labelPx = 10.5; // CSS px: size of the font
 
 /** Names the picture that labels belong to. */
-const pictureOf = (header) => `${header.scene_revision} ${header.clip_from_lps_mm}`;
+const pictureOf = (header) => `${header.scene_revision} ${header.clip_from_lps_mm} ${header.full_px}`;
 
 export class DoseLabels {
   #room;
   #api;
   #answers; // by view number
+  #px;
 
-  /** @param {import('../../room/room.js').RoomState} room @param {object} api of net/api.js @param {object} clock */
-  constructor(room, api, clock) {
+  /** @param {import('../../room/room.js').RoomState} room @param {object} api of net/api.js @param {object} clock @param {number} px size of the font */
+  constructor(room, api, clock, px = labelPx) {
     this.#room = room;
     this.#api = api;
+    this.#px = px;
     this.#answers = new Map(room.views.map((view) => [view.number, this.#live(view, clock)]));
   }
 
@@ -49,7 +51,8 @@ export class DoseLabels {
       return isShown ? pictureOf(header) : '';
     };
     const ask = async () => {
-      const textPx = labelPx * pixelRatio(); // as the size of the picture
+      const ratio = Math.max(view.document.peek().pixel_ratio ?? 1, pixelRatio());
+      const textPx = this.#px * ratio; // as the size of the picture
       const { levels } = await this.#api.isolines(room.planId.peek(), room.id, view.document.peek(), textPx);
       return levels;
     };

@@ -74,12 +74,19 @@ function extent(width, height, angle) {
   return [width * c + height * s, width * s + height * c];
 }
 
-/** Boxes of marks, in CSS px of the picture. */
+/** Boxes of marks, in the px in which labels are drawn: on a wall all of it is scaled. */
 function boxesIn(host, names) {
-  const picture = boxOf(host.querySelector('.picture'));
+  const element = host.querySelector('.picture');
+  const picture = boxOf(element);
+  const scale = host.closest('.wall') ? picture.width / element.offsetWidth || 1 : 1;
   return [...host.querySelectorAll(names)].map((mark) => {
     const { left, right, top, bottom } = boxOf(mark);
-    return { left: left - picture.left, right: right - picture.left, top: top - picture.top, bottom: bottom - picture.top };
+    return {
+      left: (left - picture.left) / scale,
+      right: (right - picture.left) / scale,
+      top: (top - picture.top) / scale,
+      bottom: (bottom - picture.top) / scale,
+    };
   });
 }
 

@@ -46,7 +46,7 @@ const toggle = (part) => withDose(({ room, ui }, at, rows) => rows.toggleDose(ro
 /** @type {import('../index.js').Feature} */
 export const dose = {
   make(world) {
-    world.doses = new DoseFacts(world.room, world.api, world.clock);
+    world.doses = new DoseFacts(world.room, world.api, world.clock, world.labelPx);
     world.charts = new ChartLoader(world);
   },
   start(world) {

@@ -2,7 +2,7 @@
 import { nothing, svg } from '../../../lib/lit-html.js';
 import { effect, signal, untracked } from '../../../lib/signals-core.js';
 import { heightOver, stepAcross } from '../../room/obliques.js';
-import { shownImage } from '../../room/plan.js';
+import { crosshair, shownImage } from '../../room/plan.js';
 import { say } from './later_words.js';
 import { colorOf, fading, isBehind, labelled, lookInSlice, lookInSpace, placeOf } from './pointer_marks.js';
 import { isInSpace } from '../../room/kinds.js';
@@ -63,7 +63,7 @@ function marksOf(world, pane, number, hidden) {
     const fade = pointer.movedAt === null ? 1 : fading(now - pointer.movedAt);
     return look && fade > 0 ? [{ ...pointer, ...place, ...look, fade }] : [];
   });
-  return labelled(marks, size, !plane);
+  return labelled(marks, size, !plane, world.isWall ? placeOf(header.clip_from_lps_mm, crosshair(scene), box) : null);
 }
 
 function drawn({ id, x, y, size, strength, fade, color, text, box, words, isLook }) {

@@ -1,7 +1,7 @@
 // Where pointers stand in a picture, by the matrix that came with it, and how they look: their size and strength, the boxes of their labels. Pure; CSS px.
 import { dot, pictureAxes, subtract, toPicture } from '../../parts/vec.js';
 import { takenIn } from '../measures/measure_label.js';
-import { placeBeside } from '../../parts/place.js';
+import { overlap, placeBeside } from '../../parts/place.js';
 import { say } from './later_words.js';
 
 export const fullMs = 3000; // a pointer that stops is drawn in full so long
@@ -55,18 +55,28 @@ const shortened = (name) => (name.length > mostChars ? `${name.slice(0, mostChar
 /**
  * Gives each mark the text and the box of its label, which covers no letter, no other mark and no other label.
  * @param {{x: number, y: number, name: string, words: string}[]} marks @param {number[]} pane @param {boolean} isInSpace
+ * @param {{x: number, y: number}|null} away labels stand on the side away from this point, where there is place
  */
-export function labelled(marks, pane, isInSpace) {
+export function labelled(marks, pane, isInSpace, away = null) {
   const taken = takenIn(pane, isInSpace, null);
   for (const { x, y } of marks) taken.push({ x: x - radiusPx, y: y - radiusPx, width: 2 * radiusPx, height: 2 * radiusPx });
   return marks.map((mark) => {
     const text = [shortened(mark.name), mark.words].filter(Boolean).join(' · ');
     const [width, height] = [Math.ceil(widthOf(text)) + 2 * paddingPx, heightPx];
-    const box = { ...placeBeside(mark, [width, height], pane, taken, gapPx), width, height };
+    const opposite = away && beyond(mark, away, [width, height]);
+    const isFree = opposite && isInside(opposite, pane) && taken.every((box) => !overlap(opposite, box));
+    const box = isFree ? opposite : { ...placeBeside(mark, [width, height], pane, taken, gapPx), width, height };
     taken.push(box);
     return { ...mark, text, box };
   });
 }
+
+/** The box beside a mark, on its side away from a point. */
+function beyond({ x, y }, away, [width, height]) {
+  return { x: x < away.x ? x - gapPx - width : x + gapPx, y: y - height / 2, width, height };
+}
+
+const isInside = ({ x, y, width, height }, pane) => x >= 0 && y >= 0 && x + width <= pane[0] && y + height <= pane[1];
 
 /** Colours of members whose own the server does not tell. */
 const colors = ['#56b4e9', '#e69f00', '#2fc99b', '#f0e442', '#cc79a7', '#ff7f50', '#9aa8ff', '#7fd84f'];

@@ -1,0 +1,87 @@
+// The right column of a wall: the legend of the dose, the regions that are shown, the value at the crosshair, who is here.
+import { html, nothing } from '../../lib/lit-html.js';
+import { legendRows } from '../features/dose/legend_rows.js';
+import { valueWords } from '../features/dose/dose_probe.js';
+import { ofFits } from '../features/fits/feature.js';
+import { ownRegions } from '../room/identity.js';
+import { crosshair } from '../room/plan.js';
+import { letters } from '../pane/letters.js';
+import { number } from '../parts/format.js';
+import { icon } from '../parts/icons.js';
+import { variables } from '../parts/mount.js';
+import { say } from './words.js';
+
+const mostRegions = 9;
+const mostPeople = 8;
+const axes = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+
+const swatch = (color, kind = '') => html`<i class=${`wall-swatch ${kind}`} ${variables({ '--color': color })}></i>`;
+
+function legendRow({ quantity, weights, reference, warn, isOld, unit, levels, scale, domain, figures }) {
+  const basis = [unit, weights].filter(Boolean).join(', ');
+  return html`<section class=${isOld ? 'wall-legend old' : 'wall-legend'}><h2>${quantity}</h2>
+    ${basis ? html`<p>${basis}</p>` : nothing}${warn ? html`<p class="warn">${icon('warning', 16)} ${warn}</p>` : nothing}
+    ${levels.length ? html`<ul class="wall-levels">${levels.map(({ color, isArea, percent, value }) => html`<li>${swatch(color, isArea ? '' : 'line')}<span>${percent} %</span><b>${value}</b></li>`)}</ul>` : nothing}
+    ${scale ? html`<i class="wall-scale" ${variables({ '--scale': scale.gradient })}></i><p class="wall-ends">${scale.ends.map((end) => html`<span>${end}</span>`)}</p>` : nothing}
+    ${[reference, domain, figures].filter(Boolean).map((words) => html`<p>${words}</p>`)}</section>`;
+}
+
+function legend(world) {
+  const { room, doses } = world;
+  const rows = legendRows(room.plan.value, room.scene.value, {
+    scale: doses.scale.value,
+    gamma: doses.gamma.value,
+    reference: doses.reference.value,
+    isKnown: doses.isOfScene(doses.scale.value.result),
+  });
+  if (!rows.length) return nothing;
+  const mark = ofFits(room)?.wordMark(world, ['dose']) ?? nothing;
+  return html`${mark === nothing ? nothing : html`<p class="wall-mark">${mark}</p>`}${rows.map(legendRow)}`;
+}
+
+function regions({ room }) {
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const shown = ownRegions(plan, scene).filter(({ id }) => scene.regions[id]?.visible);
+  if (!shown.length) return nothing;
+  const more = shown.length - mostRegions;
+  return html`<section><h2>${say.regions}</h2><ul>${shown.slice(0, more > 1 ? mostRegions : shown.length).map(({ id, name }) => html`<li>${swatch(scene.regions[id].color)}<span>${name}</span></li>`)}</ul>
+    ${more > 1 ? html`<p>${say.others({ n: more })}</p>` : nothing}</section>`;
+}
+
+/** "L 24.9 P 38.4 S −64.9" */
+const position = (point) =>
+  point.map((value, axis) => `${letters(axes[axis].map((part) => part * (value < 0 ? -1 : 1)))} ${number(Math.abs(value), 1)}`).join('  ');
+
+function atCrosshair({ room, doses, probed }) {
+  const scene = room.scene.value;
+  const { result, isOld } = doses.here.value;
+  const dose = !isOld && doses.isOfScene(result) ? valueWords(result) : '';
+  const isValue = dose && Number.isFinite(result.value);
+  const inRegions = (!probed.value.isOld && probed.value.result?.regions) || [];
+  const names = inRegions.map(({ id, region = id }) => room.plan.value.regions.find((other) => other.id === region)?.name).filter(Boolean);
+  return html`<section><h2>${say.crosshair}</h2><p>${position(crosshair(scene))}</p>
+    ${isValue ? html`<p class="wall-value">${dose}</p>` : dose ? html`<p>${dose}</p>` : nothing}${names.length ? html`<p>${names.join(', ')}</p>` : nothing}</section>`;
+}
+
+/** People of the room, the presenter first; who may not point is counted. */
+function here({ room }) {
+  const people = room.members.value.filter(({ role, connected }) => role !== 'wall' && connected !== false);
+  const named = people.filter(({ role }) => role !== 'observer').sort((a, b) => Number(b.presenting) - Number(a.presenting));
+  const isLong = named.length > mostPeople;
+  const shown = isLong ? named.slice(0, mostPeople - 1) : named;
+  const n = people.length - named.length;
+  return html`<section><h2>${say.here}</h2>${people.length ? nothing : html`<p>${say.nobodyHere}</p>`}
+    <ul>${shown.map(({ name, color }) => html`<li>${swatch(color, 'dot')}<span>${name}</span></li>`)}</ul>
+    ${isLong ? html`<p>${say.others({ n: named.length - shown.length })}</p>` : nothing}${n ? html`<p>${say.observers({ n })}</p>` : nothing}</section>`;
+}
+
+/** @param {object} world of wall_page.js */
+export function wallColumn(world) {
+  const { room } = world;
+  if (!room.plan.value || !room.scene.value) return nothing;
+  return html`${legend(world)}${regions(world)}${atCrosshair(world)}${here(world)}`;
+}
