@@ -112,20 +112,6 @@ test('the plan document has patients masked, and says of which of them each part
   );
 });
 
-test('regions of one name say which structure set is theirs, by its label or else its file', async () => {
-  const sets = async (plan) => (await call(`${api}/plans/${plan}`)).json.regions.map(({ name, set }) => [name, set]);
-  const folder = join(plans, 'case-3');
-  putWhole(folder, quirin);
-  assert.deepEqual(await sets('case-1'), [['Box', undefined]]);
-  putStructs(folder, quirin, { uid: '1.2.64', file: 'second.dcm', label: 'After', left: 2 });
-  await openPlan(daemon.url, 'case-3');
-  assert.deepEqual((await sets('case-3')).map(([, set]) => set).sort(), ['After', 'Set']);
-  putStructs(folder, quirin, { uid: '1.2.65', file: 'third.dcm', label: 'After', left: 4 });
-  await call(`${api}/plans/case-3/close`, 'POST', {});
-  await openPlan(daemon.url, 'case-3');
-  assert.deepEqual((await sets('case-3')).map(([, set]) => set).sort(), ['second.dcm', 'structs.dcm', 'third.dcm']);
-});
-
 test('identity is told in full, is never stored, and each time is a row of the audit', async () => {
   assert.deepEqual(auditRows(), []);
   const answer = await call(`${api}/plans/case-1/identity`);
@@ -242,6 +228,24 @@ test('a server that others may reach tells nobody', async () => {
   }
 });
 
+/** Nine people as files may write them, in one folder: what is told of each in full occurs in /identity alone. */
+const nine = [
+  { id: '41-7731926', name: 'Abendrot^Friedgund^Maria', birthDate: '19380117' },
+  { id: 'k7', name: 'Brennecke^Ole', birthDate: '19770304' }, // an id of two characters
+  { id: '', name: 'Czibulka^Veit', birthDate: '' }, // no id, no birth date
+  { id: '52-8842035', name: 'Ünterhölzer^Éva', birthDate: '19690928' },
+  { id: '63-9951146', name: 'Yamagami^Tarou=山上^太郎=やまがみ^たろう', birthDate: '19510611' },
+  { id: '74-1060257', name: 'Dornbusch\u202e^Kunibert', birthDate: '19820219' }, // a mark of writing direction
+  { id: '85-2171368', name: 'Eichinger Walburga', birthDate: '19440730' }, // no ^
+  { id: '41-7731926', name: 'Abendrot^Friedgund^Maria', birthDate: '19380118' }, // the first one's id, another birth date
+  { id: '96-3282479', name: `Feuerbacher-${'x'.repeat(30)}^Notburga`, birthDate: '20010405' },
+].map((owner, n) => ({ ...owner, study: `1.2.33.${n}`, frame: `1.2.43.${n}` }));
+const ofNine = nine.flatMap(({ id, name, birthDate }) => [
+  ...name.split(/[\^= \u202e]/).filter((part) => part.length > 2 || /[^\x20-\x7f]{2}/.test(part)),
+  ...(id.length > 5 ? [id, id.slice(-4)] : []),
+  ...(birthDate ? [birthDate, `${birthDate.slice(0, 4)}-${birthDate.slice(4, 6)}-${birthDate.slice(6)}`] : []),
+]);
+
 /** A value for each parameter that a route may need. */
 const values = {
   x: 14,
@@ -284,6 +288,10 @@ test('a meeting names the patient of a case masked, in its agenda, on the way th
 });
 
 test('no other answer, and nothing on the disk or in the log, says who the patients are', async () => {
+  await assertNobodyIsNamed('case-1', room);
+});
+
+async function assertNobodyIsNamed(planId, room) {
   const spec = (await call(`${api}/openapi.json`)).json;
   const client = clients[0];
   client.send({ type: 'note.add', id: 'n-1', body: { text: 'A note', point_lps_mm: [14, 14, 9] } });
@@ -294,7 +302,7 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
     if (!get || path === '/api/v1/plans/{plan}/identity' || /\/(ws|stream|events)$/.test(path)) continue;
     const address = path.replace(
       /\{(\w+)\}/g,
-      (_, name) => ({ plan: 'case-1', room, meeting, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none',
+      (_, name) => ({ plan: planId, room, meeting, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none',
     );
     const query = new URLSearchParams();
     for (const parameter of get.parameters ?? [])
@@ -306,7 +314,7 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
     if (answer.headers.get('content-type') === 'image/png') assertMasked(`${path}, texts`, textsOf(bytes));
   }
   assert.ok(nGood >= 20, `${nGood} routes answered`);
-  const picture = await fetch(`${api}/plans/case-1/render`, {
+  const picture = await fetch(`${api}/plans/${planId}/render`, {
     method: 'POST',
     headers: { 'Content-Type': 'application/json' },
     body: JSON.stringify({ annotations: true, view: { kind: 'axial' } }),
@@ -324,7 +332,7 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
     } /* the log of the database comes and goes */
     assertMasked(file, bytes.toString('latin1'));
   }
-});
+}
 
 test('the command line tells who the patient is only when asked, and converts without it', () => {
   const run = (...args) => spawnSync(join(bin, 'beamroom'), args, { encoding: 'utf8' });
@@ -426,4 +434,40 @@ test('a search finds a plan by what is shown of its patient, and by the whole id
   } finally {
     await open.stop();
   }
+});
+
+test('regions of one name say which structure set is theirs, by its label or else its file', async () => {
+  const sets = async (plan) => (await call(`${api}/plans/${plan}`)).json.regions.map(({ name, set }) => [name, set]);
+  const folder = join(plans, 'case-3');
+  putWhole(folder, quirin);
+  assert.deepEqual(await sets('case-1'), [['Box', undefined]]);
+  putStructs(folder, quirin, { uid: '1.2.64', file: 'second.dcm', label: 'After', left: 2 });
+  await openPlan(daemon.url, 'case-3');
+  assert.deepEqual((await sets('case-3')).map(([, set]) => set).sort(), ['After', 'Set']);
+  putStructs(folder, quirin, { uid: '1.2.65', file: 'third.dcm', label: 'After', left: 4 });
+  await call(`${api}/plans/case-3/close`, 'POST', {});
+  await openPlan(daemon.url, 'case-3');
+  assert.deepEqual((await sets('case-3')).map(([, set]) => set).sort(), ['second.dcm', 'structs.dcm', 'third.dcm']);
+});
+
+test('so it is with nine people in a folder, however their names are written', async () => {
+  const folder = join(plans, 'case-9');
+  putWhole(folder, nine[0]);
+  for (const [n, owner] of nine.entries()) if (n) putDose(folder, owner, { uid: `1.2.90.${n}`, file: `dose-${n}.dcm` });
+  assert.equal((await openPlan(daemon.url, 'case-9')).state, 'done', daemon.log());
+  const told = (await call(`${api}/plans/case-9/identity`)).json.patients;
+  assert.deepEqual(
+    told.map(({ id, name, birth_date: birth }) => `${id} ${name} ${birth.replaceAll('-', '')}`).sort(),
+    nine.map(({ id, name, birthDate }) => `${id} ${name} ${birthDate}`).sort(),
+  );
+  assert.deepEqual(
+    told.map(({ masked }) => masked).sort(),
+    ['F. M. A. …926', 'F. M. A. …926', 'K. D. …257', 'N. F. …479', 'O. B. …7', 'T. Y. …146', 'V. C.', 'E. W. …368']
+      .concat('É. Ü. …035')
+      .sort(),
+  );
+  secrets.push(...ofNine);
+  const made = (await call(`${api}/rooms`, 'POST', { plan: 'case-9' })).json.id;
+  clients.unshift(await Client.enter(daemon.url, made, { name: 'Ann' }));
+  await assertNobodyIsNamed('case-9', made);
 });

@@ -1,12 +1,13 @@
 // Comma-separated values as of RFC 4180.
 
 import { say } from './later_words.js';
+import { visibleText } from './visible_text.js';
 
 /** A text that a spreadsheet would take for a formula gets an apostrophe in front. */
 const guarded = (text) => (/^[=+@\t]/.test(text) ? `'${text}` : text);
 const cell = (value) => {
   if (typeof value === 'number') return Number.isFinite(value) ? String(Number(value.toPrecision(7))) : '';
-  const text = guarded(String(value ?? ''));
+  const text = guarded(visibleText(String(value ?? ''))); // a spreadsheet would obey marks of writing direction
   return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 };
 

@@ -1,6 +1,7 @@
 // Limits on doses, scene.constraints: their checks, their files, and what the server says of them.
 import { enums } from '../../../gen/wire.js';
 import { csvRows, csvText } from '../../parts/csv.js';
+import { visibleText } from '../../parts/visible_text.js';
 import { boundsWords, figureWords } from './dose_dvh.js';
 import { populationWords } from './dose_population.js';
 import { freeNumber } from '../../room/marks.js';
@@ -48,7 +49,8 @@ export function limitAt({ metric, limit }) {
 export const freeConstraintId = (constraints, taken = [], suffix = '') =>
   `limit-${freeNumber([...Object.keys(constraints ?? {}), ...taken], 'limit-')}${suffix}`;
 
-const regionOf = (plan, word) => plan.regions.find(({ id }) => id === word) ?? plan.regions.find(({ name }) => name === word);
+const regionOf = (plan, word) =>
+  plan.regions.find(({ id }) => id === word) ?? plan.regions.find(({ name }) => name === word || visibleText(name) === word); // as a file of ours has it
 
 /** Checks one by the rules of the scene. Throws an Error with a sentence. @returns {Constraint} */
 export function readConstraint({ region, quantity, metric, side, limit, tissue = '' }, plan) {

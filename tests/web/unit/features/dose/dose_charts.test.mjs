@@ -201,6 +201,7 @@ test('comma-separated values come back as they were, and broken ones name their 
   assert.throws(() => csvRows('a\n"b'), /Line 2: a quotation mark is not closed/);
   assert.throws(() => csvRows('a\nb"c'), /Line 2: a quotation mark inside a field/);
   assert.throws(() => csvRows('"a"b'), /Line 1: text after a quotation mark/);
+  assert.equal(csvText([['brain\u202enoitcennoc', 1]]), 'brain«RLO»noitcennoc,1\r\n'); // shown, not obeyed
 });
 
 test('a line through the patient: depth of a point, how far beside it is, and back', () => {
