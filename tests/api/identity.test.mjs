@@ -154,6 +154,7 @@ test('a wall names the patient when somebody with the right has it so, alone, un
     return client;
   };
   const [wall, hall] = [await enter(), await enter()];
+  assert.equal(wall.welcome.sees_identity, false);
   const read = (client) => call(`${base}/identity`, 'GET', undefined, client.headers);
   const name = (of, shown, headers = ann.headers) => call(`${base}/members/${of.welcome.member}/identity`, 'POST', { shown }, headers);
   const naming = async () => (await call(`${base}/members`)).json.members.filter(({ is_naming: is }) => is).map(({ id }) => id);

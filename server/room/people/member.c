@@ -223,7 +223,7 @@ static void welcome_member(struct room *room, struct member *member)
     welcome->scene = room->shared.scene;
     welcome->revision = room->shared.revision;
     (void)snprintf(welcome->gl, sizeof welcome->gl, "%s", room->renderer.gl);
-    welcome->sees_identity = room->callbacks.sees_identity &&
+    welcome->sees_identity = member->role != WIRE_MEMBER_ROLE_WALL && room->callbacks.sees_identity &&
                              room->callbacks.sees_identity(room->callbacks.context, room, member->connection);
     cJSON *items = items_rows(room);
     welcome->items = items;
