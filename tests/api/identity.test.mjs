@@ -243,7 +243,7 @@ const nine = [
 ].map((owner, n) => ({ ...owner, study: `1.2.33.${n}`, frame: `1.2.43.${n}` }));
 const ofNine = nine.flatMap(({ id, name, birthDate }) => [
   ...name.split(/[\^= \u202e]/).filter((part) => part.length > 2 || /[^\x20-\x7f]{2}/.test(part)),
-  ...(id.length > 5 ? [id, id.slice(-4)] : []),
+  ...(id.length > 5 ? [id, id.split('-').at(-1)] : []),
   ...(birthDate ? [birthDate, `${birthDate.slice(0, 4)}-${birthDate.slice(4, 6)}-${birthDate.slice(6)}`] : []),
 ]);
 
