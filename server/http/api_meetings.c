@@ -114,12 +114,15 @@ static cJSON *describe_case(const struct api *api, const struct call *call, cons
     const bool has_room =
         is_open && one->room[0] && (net_room_find(api->net, one->room) || net_room_is_asleep(api->net, one->room));
     const char *reason = is_open ? reason_of_dose(api, one->plan) : NULL;
+    struct fleet_plan scanned; /* of a plan that was not loaded since it is a case, the scan of its folder tells */
+    const bool is_scanned =
+        is_open && !one->patient[0] && fleet_plan_find(net_fleet(api->net), one->plan, &scanned) && scanned.patient[0];
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "id", one->id);
     add_text(json, "plan", is_open ? one->plan : "");
-    add_text(json, "label", is_open ? one->label : "");
-    add_text(json, "patient", is_open ? one->patient : "");
-    add_text(json, "approval", is_open ? one->approval : "");
+    add_text(json, "label", !is_open ? "" : is_scanned && scanned.label[0] ? scanned.label : one->label);
+    add_text(json, "patient", !is_open ? "" : is_scanned ? scanned.patient : one->patient);
+    add_text(json, "approval", !is_open ? "" : is_scanned ? scanned.approval : one->approval);
     add_text(json, "room", has_room ? one->room : "");
     cJSON_AddStringToObject(json, "state", state_of(meeting, one, is_open));
     add_time(json, "since_ms", strcmp(meeting->now, one->id) == 0 ? meeting->since_ms : 0);

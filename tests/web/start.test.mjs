@@ -101,21 +101,116 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     if (folder) rmSync(folder, { recursive: true, force: true });
   });
 
-  once('folders that are no plans are one folded line, and a broken plan is not among them', async () => {
+  once('folders that are no plans are a place of their own, and a broken plan is not among them', async () => {
     const page = await newPage();
-    await page.locator('.folders summary', { hasText: '2 folders are not plans' }).waitFor();
     assert.equal(await page.locator('.refusal').count(), 1, 'of the broken plan alone');
-    assert.ok(!(await page.locator('.folders li').first().isVisible()));
-    await page.locator('.folders summary').press('Enter');
-    assert.deepEqual(await page.locator('.folders li code').allTextContents(), ['letters', 'photos']);
-    await isClean(page, 'list with a refused plan and folders');
+    assert.equal(await page.locator('[data-place="no-plans"] .n').textContent(), '2');
+    await page.locator('[data-place="no-plans"]').press('Enter');
+    await page.locator('.no-plans li').nth(1).waitFor();
+    assert.deepEqual(await page.locator('.no-plans code').allTextContents(), ['letters', 'photos']);
+    assert.equal(await page.locator('[data-plan]').count(), 0);
+    await isClean(page, 'folders that are no plans');
+    await page.locator('[data-place="folder plans"]').click();
+    await page.locator('.list-head', { hasText: 'plans: 2 of 2' }).waitFor(); // both folders are called that
+    await page.context().close();
+  });
+
+  once('a plan with a room is gone on with; "New room" makes one; a room has a name; "/" finds by it', async () => {
+    const page = await newPage();
+    const row = page.locator('[data-plan="phantom"]');
+    await row.getByRole('button', { name: 'Open Phantom' }).click();
+    await full(page);
+    const first = page.url().split('/').at(-1);
+    await page.locator('.room-chip:visible .chip-main').click();
+    await page.getByRole('button', { name: /give this room another name/ }).click();
+    await page.getByLabel('Name of this room').fill('Second look');
+    await isClean(page, 'naming a room');
+    await page.keyboard.press('Enter');
+    await page.locator('.room-title', { hasText: 'Second look' }).waitFor();
+    assert.equal((await call(`${world.daemon.url}/api/v1/rooms/${first}`)).json.name, 'Second look');
+    await page.goto(world.daemon.url);
+    await row.locator('.last-room', { hasText: 'Last room: Second look' }).waitFor();
+    await page.keyboard.press('/');
+    await page.keyboard.type('second l');
+    await page.locator('.list-head', { hasText: '“second l”: 1 of' }).waitFor();
+    await isClean(page, 'a plan with a room');
+    await row.getByRole('button', { name: 'Go on with Phantom' }).click();
+    await full(page);
+    assert.equal(page.url().split('/').at(-1), first, 'the same room');
+    await page.goto(world.daemon.url);
+    await row.getByRole('button', { name: 'New room on Phantom' }).click();
+    await page.waitForURL(/rooms/);
+    await full(page);
+    const second = page.url().split('/').at(-1);
+    assert.notEqual(second, first);
+    await page.goto(world.daemon.url); // nobody has changed anything in it
+    await row.locator('.last-room', { hasText: 'Second look' }).waitFor();
+    assert.equal(await page.locator(`[data-room="${second}"]`).count(), 0, 'it left no trace');
+    assert.equal((await call(`${world.daemon.url}/api/v1/rooms/${first}`, 'DELETE')).status, 204);
+    await page.context().close();
+  });
+
+  once('a meeting is made, gets cases, is put in order by keys and by drag, loses a case, and is gone into', async () => {
+    const page = await newPage();
+    await page.getByRole('button', { name: 'New meeting' }).click();
+    await page.getByLabel('Name of the meeting').fill('Tumour board');
+    await isClean(page, 'making a meeting');
+    await page.keyboard.press('Enter');
+    const meeting = page.locator('.meeting', { hasText: 'Tumour board' });
+    await meeting.waitFor();
+    const { meetings } = (await call(`${world.daemon.url}/api/v1/meetings`)).json;
+    const at = `${world.daemon.url}/api/v1/meetings/${meetings[0].id}`;
+    await meeting.getByRole('button', { name: 'Add a case' }).click();
+    await meeting.getByLabel('Plan of the case').selectOption('phantom');
+    await meeting.getByRole('button', { name: 'Add', exact: true }).click();
+    await meeting.locator('.case').waitFor();
+    const { id: room } = (await call(`${world.daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json;
+    const added = await call(`${at}/cases`, 'POST', { plan: 'phantom', room });
+    assert.equal(added.status, 200, added.text);
+    const [one, two] = added.json.cases.map(({ id }) => id);
+    const orderIs = (...ids) =>
+      page.waitForFunction(
+        (wanted) => [...document.querySelectorAll('.case')].map(({ dataset }) => dataset.case).join() === wanted,
+        ids.join(),
+      );
+    await orderIs(one, two);
+    await isClean(page, 'an agenda');
+    await meeting.locator('.case').first().getByRole('button', { name: /down$/ }).press('Enter');
+    await orderIs(two, one);
+    await meeting.locator(`[data-case="${one}"]`).dragTo(meeting.locator(`[data-case="${two}"]`));
+    await orderIs(one, two);
+    assert.deepEqual(
+      (await call(at)).json.cases.map(({ id }) => id),
+      [one, two],
+      'so it is on the server',
+    );
+    await meeting
+      .locator(`[data-case="${two}"]`)
+      .getByRole('button', { name: /off the agenda$/ })
+      .click();
+    await orderIs(one);
+    await meeting.getByRole('button', { name: 'Name and time' }).click();
+    await meeting.getByLabel('Name of the meeting').fill('Tumour board, Friday');
+    await page.keyboard.press('Enter');
+    await page.locator('.meeting h2', { hasText: 'Tumour board, Friday' }).waitFor();
+    await page.locator('.meeting').getByRole('button', { name: 'Begin' }).click();
+    await full(page);
+    const running = (await call(at)).json;
+    assert.deepEqual([running.state, running.cases[0].state, page.url().split('/').at(-1)], ['running', 'now', running.cases[0].room]);
+    await page.goto(world.daemon.url);
+    await page.locator('.case[data-state="now"]').waitFor();
+    await shoot(page, 'start-meeting');
+    assert.equal((await call(`${at}/end`, 'POST', {})).status, 200);
+    assert.equal((await call(at, 'DELETE')).status, 204);
+    await call(`${world.daemon.url}/api/v1/rooms/${running.cases[0].room}`, 'DELETE');
+    await call(`${world.daemon.url}/api/v1/rooms/${room}`, 'DELETE');
     await page.context().close();
   });
 
   later('a plan that is not loaded has no thumbnail and is not loaded for one; a loaded plan has one', async () => {
     const page = await newPage();
     const thumbnail = page.locator('[data-plan="phantom"] .thumb img');
-    await page.waitForResponse(/\/api\/v1\/plans$/); // a second list
+    await page.waitForResponse(/\/api\/v1\/plans\/search$/); // a second list
     assert.equal(await thumbnail.count(), 0);
     assert.equal((await call(`${world.daemon.url}/api/v1/plans/phantom`)).json.state, 'not-loaded');
     await openPlan(world.daemon.url, 'phantom');
@@ -225,7 +320,10 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
           await isClean(page, state, forcedColors === 'active');
           const wide = await page.evaluate(() =>
             [...document.querySelectorAll('.start *')]
-              .filter((element) => element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 0.5)
+              .filter(
+                (element) =>
+                  element.checkVisibility() && !element.closest('.places') && element.getBoundingClientRect().right > innerWidth + 0.5,
+              )
               .map((element) => element.outerHTML.slice(0, 80)),
           );
           assert.deepEqual(wide, [], state);
@@ -242,7 +340,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         await page.route('**/api/v1/jobs/j', (route) =>
           route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }),
         );
-        await page.locator('[data-plan="phantom"] button', { hasText: 'Open' }).click();
+        await page.getByRole('button', { name: /^(Open|New room on) Phantom/ }).click();
         await page.getByRole('progressbar').waitFor();
         await check('loading');
         await page
@@ -256,7 +354,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         await page.getByLabel('Find a plan').fill('no such plan');
         await page.locator('.empty', { hasText: 'No plan fits' }).waitFor();
         await check('nothing found');
-        await page.route('**/api/v1/plans', (route) => route.abort());
+        await page.route('**/api/v1/plans/search', (route) => route.abort());
         await page.locator('.notice.bad').waitFor();
         await check('no server');
         await page.context().close();
@@ -287,13 +385,13 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     const page = await newPage();
     await page.evaluate(() => document.activeElement.blur());
     const seen = [];
-    for (let i = 0; i < 60; i++) {
+    for (let i = 0; i < 80; i++) {
       await page.keyboard.press('Tab');
       const found = await page.evaluate(() => {
         const element = document.activeElement;
         if (element === document.body) return null;
         const { y, x } = element.getBoundingClientRect();
-        const region = element.closest('.banner, main, aside, footer')?.className || element.closest('main')?.tagName || '';
+        const region = element.closest('.banner, nav.places, main, aside, footer')?.className || element.closest('main')?.tagName || '';
         return {
           name: element.getAttribute('aria-label') || element.labels?.[0]?.textContent.trim() || element.textContent.trim(),
           region,
@@ -307,20 +405,15 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     }
     for (const { name, ring } of seen) assert.notEqual(ring, 'none', name);
     const regions = seen.map(({ region }) => region);
-    assert.deepEqual([...new Set(regions)], ['banner', 'MAIN', 'load-report']);
+    assert.deepEqual([...new Set(regions)], ['banner', 'places', 'MAIN', 'load-report']);
     assert.deepEqual(
       regions,
-      [...regions].sort((a, b) => ['banner', 'MAIN', 'load-report'].indexOf(a) - ['banner', 'MAIN', 'load-report'].indexOf(b)),
+      [...regions].sort(
+        (a, b) => ['banner', 'places', 'MAIN', 'load-report'].indexOf(a) - ['banner', 'places', 'MAIN', 'load-report'].indexOf(b),
+      ),
     );
     const names = seen.map(({ name }) => name);
-    for (const name of [
-      'Find a plan',
-      'Join a room',
-      'Your name, as others in a room see it',
-      'Open Phantom: modified Snyder head',
-      'Choose files',
-      'Choose a folder',
-    ])
+    for (const name of ['Find a plan', 'Join a room', 'Your name, as others in a room see it', 'Choose files', 'Choose a folder'])
       assert.ok(names.includes(name), `${name} is among ${names.join(' | ')}`);
     await page.context().close();
   });

@@ -202,6 +202,8 @@ async function route() {
     const [{ startPage, sendPlan, Thumbnails }] = await Promise.all([
       import('./features/start/start_page.js'),
       styled('js/features/start/start.css'),
+      styled('js/features/start/plans.css'),
+      styled('js/features/start/meetings.css'),
     ]);
     thumbnails ??= new Thumbnails(api, URL);
     const send = ({ publicName, ...task }) =>

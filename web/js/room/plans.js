@@ -1,18 +1,17 @@
 // State of the start page: the plans and rooms, the jobs that load plans, the report of the chosen plan.
 import { present } from './after_room.js';
-import { batch, computed, signal } from '../../lib/signals-core.js';
+import { batch, signal } from '../../lib/signals-core.js';
 import { Problem } from '../net/api.js';
 import { readReport } from './plan.js';
 import { say } from './words.js';
 
 const listMs = 4000;
+const typingMs = 120; // after the last key, before the server is asked
+export const pagePlans = 50;
 const jobMs = 150;
 
 /** True for a problem of the server as a whole, such as too many open plans, and not of the plan. */
 export const isOfServer = (problem) => ['/problems/busy', '/problems/limit'].includes(problem?.type);
-
-/** True for a folder that is listed but is no plan: nothing in it can be shown, and nothing says that it is meant to be one. */
-export const isNoPlan = (plan) => plan.state === 'unreadable' && !plan.has_plan_file && !plan.uploaded;
 
 export { present };
 
@@ -23,6 +22,7 @@ export class PlansState {
   #timer = 0;
   #isStopped = false;
   #newest = 0;
+  #nLists = 0;
   #seen;
 
   /** @param {object} world {api, clock, enter: (room: string, plan: string) => void, seen: is told of each new list of plans} */
@@ -31,7 +31,8 @@ export class PlansState {
     this.#api = api;
     this.#clock = clock;
     this.#enter = enter;
-    this.plans = signal(null); // null until the first answer
+    this.plans = signal(null); // those of the page that is shown; null until the first answer
+    this.found = signal({ total: 0, of: 0, next: null, folders: [], n_all: 0, n_uploads: 0, n_no_plans: 0 });
     this.rooms = signal([]);
     this.version = signal(null);
     this.error = signal('');
@@ -40,21 +41,15 @@ export class PlansState {
     this.notice = signal(''); // what the server as a whole cannot do at the moment
     this.chosen = signal('');
     this.report = signal(null); // {plan, loadMs, lines, dropped} of the chosen plan; null without one
-    this.filter = signal('all'); // all | ready | warnings
+    this.place = signal({ kind: 'today', name: '' }); // today | all | folder | uploads | no-plans; name: the folder's
+    this.sort = signal('used'); // used | name | approved
     this.search = signal('');
+    this.cursors = signal(['']); // of the pages up to the one that is shown
+    this.isOld = signal(false); // the list is another one than was asked for last
+    this.unfolded = signal(''); // the plan whose older rooms are shown
     this.isJoining = signal(false);
     this.isNaming = signal(false);
     this.deleting = signal(null); // {plan, rooms: those on it, null while unknown} while the user has yet to confirm a deletion
-    this.folders = computed(() => (this.plans.value ?? []).filter(isNoPlan));
-    this.shown = computed(() => {
-      const words = this.search.value.trim().toLowerCase();
-      return (this.plans.value ?? []).filter((plan) => {
-        if (isNoPlan(plan)) return false;
-        if (this.filter.value === 'ready' && plan.state !== 'ready') return false;
-        if (this.filter.value === 'warnings' && !plan.n_warnings) return false;
-        return !words || `${plan.name} ${plan.id}`.toLowerCase().includes(words);
-      });
-    });
   }
 
   start() {
@@ -70,6 +65,30 @@ export class PlansState {
   stop() {
     this.#isStopped = true;
     this.#clock.clearTimeout(this.#timer);
+  }
+
+  /** Shows other plans: of a place, found by a text, in an order. @param {{place?: object, search?: string, sort?: string}} what */
+  show(what) {
+    batch(() => {
+      for (const [name, value] of Object.entries(what)) this[name].value = value;
+      this.cursors.value = [''];
+      this.isOld.value = true;
+    });
+    this.#clock.clearTimeout(this.#timer);
+    this.#timer = this.#clock.setTimeout(() => this.#list(), what.search === undefined ? 0 : typingMs);
+  }
+
+  /** Goes to the next page of plans, or back. */
+  turn(isNext) {
+    const { next } = this.found.value;
+    if (isNext ? !next : this.cursors.value.length < 2) return;
+    this.cursors.value = isNext ? [...this.cursors.value, next] : this.cursors.value.slice(0, -1);
+    void this.#list();
+  }
+
+  /** Goes into a room. */
+  goOn(room) {
+    this.#enter(room.id, room.plan);
   }
 
   choose(id) {
@@ -106,7 +125,12 @@ export class PlansState {
   /** Shows a plan that was just uploaded. */
   async arrived(id) {
     await this.#list();
-    if (!this.#isStopped) this.choose(id);
+    if (this.#isStopped) return;
+    if (!this.plans.value?.some((plan) => plan.id === id)) {
+      this.show({ place: { kind: 'uploads', name: '' }, search: '' });
+      await this.#list();
+    }
+    this.choose(id);
   }
 
   /** Asks the user whether a plan is to be deleted, and looks who is in rooms on it. */
@@ -150,20 +174,40 @@ export class PlansState {
     return null;
   }
 
+  #question() {
+    const { kind, name } = this.place.value;
+    const folder = { folder: name, uploads: 'uploads' }[kind] ?? '';
+    return {
+      text: this.search.value.trim(),
+      folder,
+      sort: this.sort.value,
+      kind: kind === 'no-plans' ? 'no-plan' : 'plan',
+      limit: pagePlans,
+      cursor: this.cursors.value.at(-1),
+    };
+  }
+
   async #list() {
     this.#clock.clearTimeout(this.#timer);
+    const request = ++this.#nLists;
     try {
-      const [{ plans }, { rooms }] = await Promise.all([this.#api.plans(), this.#api.rooms()]);
+      const [{ plans, ...found }, { rooms }] = await Promise.all([
+        this.#api.call('POST', 'plans/search', { body: this.#question() }),
+        this.#api.rooms(),
+      ]);
+      if (request !== this.#nLists) return; // another question was asked since
       batch(() => {
         this.plans.value = plans;
+        this.found.value = found;
         this.rooms.value = rooms;
         this.error.value = '';
+        this.isOld.value = false;
       });
       if (!this.#isStopped) this.#seen(plans);
-      const known = plans.filter((plan) => !isNoPlan(plan));
-      if (!this.chosen.value && known.length) this.choose((known.find((plan) => plan.state === 'ready') ?? known[0]).id);
+      if (!this.chosen.value && plans.length) this.choose((plans.find((plan) => plan.state === 'ready') ?? plans[0]).id);
       else this.#readReport();
     } catch (error) {
+      if (request !== this.#nLists) return;
       this.error.value = error.message;
     }
     if (!this.#isStopped) this.#timer = this.#clock.setTimeout(() => this.#list(), listMs);

@@ -56,6 +56,7 @@ export class RoomState {
     this.isLeft = signal(false); // its page is gone
     this.members = signal([]);
     this.planId = signal('');
+    this.name = signal(''); // of the room; '': none was given
     this.plan = signal(null);
     this.revision = signal(0);
     this.isScenePending = signal(false);
@@ -335,6 +336,9 @@ export class RoomState {
         this.recording.at.value = message;
         if (message.state === 'left') this.recording.replay.value = null;
       },
+      room: () => {
+        this.name.value = message.name;
+      },
       pong: () => {
         this.pingMs.value = Math.round(this.#clock.now() - message.time_ms);
       },
@@ -355,6 +359,7 @@ export class RoomState {
     this.member.value = message.member;
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;
+    this.name.value = '';
     this.gl.value = message.gl;
     this.seesIdentity.value = message.sees_identity;
     this.#isLoaded = false;

@@ -1,7 +1,10 @@
 // The members of a room: who presents, follows or waits; what can be done about control; the own name. Loaded when it is first opened.
 import { initials } from '../parts/format.js';
 import { html, nothing } from '../../lib/lit-html.js';
+import { signal } from '../../lib/signals-core.js';
 import { repeat } from '../../lib/directives/repeat.js';
+import { ofMember } from '../net/api.js';
+import { roomName } from '../parts/when.js';
 import { maxName } from '../room/own_name.js';
 import { icon } from '../parts/icons.js';
 import { recordings } from '../features/recordings/recordings.js';
@@ -118,6 +121,60 @@ function nameForm({ room, ui, ownName }) {
     <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>${say.save}</button></form>`;
 }
 
+const begun = new WeakMap(); // by room: a signal of when it was made
+const isNaming = signal(false);
+
+/** The room's name, given or of its plan and its first day. */
+function nameOf({ room, api }) {
+  const plan = room.plan.value;
+  if (!begun.has(room)) {
+    begun.set(room, signal(''));
+    api.room(room.id).then(
+      ({ created_at }) => {
+        begun.get(room).value = created_at;
+      },
+      () => {},
+    );
+  }
+  const title = plan?.treatmentPlans[plan.shownPlan]?.label || plan?.name || room.planId.value;
+  const created_at = begun.get(room).value;
+  return room.name.value || (created_at ? roomName({ name: '', created_at }, title) : title);
+}
+
+/** The name of the room; who has the right changes it in place. */
+function roomTitle(world) {
+  const { room, ui, api } = world;
+  const name = nameOf(world);
+  if (!room.control.may('control')) return html`<p class="room-title"><b>${name}</b></p>`;
+  const end = (event) => {
+    const chip = event.target.closest('.room-members');
+    isNaming.value = false;
+    queueMicrotask(() => chip.querySelector('.room-title button')?.focus());
+  };
+  const save = (event) => {
+    event.preventDefault();
+    const given = new FormData(event.target).get('title').trim();
+    end(event);
+    if (given !== room.name.value)
+      api
+        .call('PATCH', `rooms/${room.id}`, { body: { name: given || null }, more: ofMember(room.identity) })
+        .catch((error) => ui.notify('err', error.message));
+  };
+  const begin = (event) => {
+    const chip = event.target.closest('.room-members');
+    isNaming.value = true;
+    queueMicrotask(() => chip.querySelector('#room-title')?.select());
+  };
+  return isNaming.value
+    ? html`<form class="own-name room-title" @submit=${save} @keydown=${(event) => {
+        if (event.key !== 'Escape') return;
+        event.stopPropagation();
+        end(event);
+      }}><label for="room-title">${say.roomName}</label>
+    <input id="room-title" name="title" maxlength="80" autocomplete="off" placeholder=${name} aria-describedby="room-title-note" .value=${room.name.value}><button>${say.save}</button><p class="dim" id="room-title-note">${say.roomNameIsSeen}</p></form>`
+    : html`<p class="room-title"><button class="as-text" title=${say.renameRoom} aria-label=${say.renameOf({ name })} @click=${begin}><b>${name}</b></button></p>`;
+}
+
 /** Contents of the room chip's popover. @param {object} world {room, ui, ownName, api, watching} */
 export function roster({ room, ui, ownName, api, watching }) {
   const act = (event, what) => {
@@ -127,7 +184,7 @@ export function roster({ room, ui, ownName, api, watching }) {
     what();
   };
   const locked = room.control.isLocked.value;
-  return html`<ul>${repeat(
+  return html`${roomTitle({ room, ui, api })}<ul>${repeat(
     room.members.value,
     ({ id }) => id,
     (member) => row(member, room),

@@ -5,26 +5,34 @@ import { maxName } from '../../room/own_name.js';
 import { present } from '../../room/plans.js';
 import { initials, number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { roomName } from '../../parts/when.js';
 import { say } from './later_words.js';
+import { roomFacts, titleOf } from './plan_row.js';
 import { whoIn } from './who_in.js';
 
-export function roomsList(state, enter) {
-  const rooms = [...state.rooms.value].sort((a, b) => present(b).length - present(a).length || b.created_at.localeCompare(a.created_at));
+/** Rooms of this person: theirs, those they were in or were asked to, asleep ones too; those with people in them first. */
+export function roomsList(state, ownName) {
+  const rooms = state.rooms.value.filter((room) => room.is_mine);
   if (!rooms.length) return nothing;
-  const nameOf = (id) => state.plans.value?.find((plan) => plan.id === id)?.name ?? id;
+  rooms.sort((a, b) => present(b).length - present(a).length || b.used_ms - a.used_ms);
+  const planOf = (id) => state.plans.value?.find((plan) => plan.id === id);
   return html`<section class="rooms" aria-labelledby="rooms-head"><div class="list-head"><h2 id="rooms-head">${say.rooms}</h2>
       <span class="dim">${say.nRooms({ count: number(rooms.length), n: rooms.length })}</span></div>
     <ul>${repeat(
-      rooms,
+      rooms.slice(0, 20),
       ({ id }) => id,
       (room) => {
         const members = present(room);
-        const facts = { room: room.id, plan: nameOf(room.plan), who: whoIn(room) };
-        const avatar = ({ name }, index) => html`<span class=${`avatar small tint-${index % 4}`}>${initials(name)}</span>`;
+        const plan = planOf(room.plan);
+        const title = plan ? titleOf(plan) : room.plan;
+        const name = roomName(room, title);
+        const facts = members.length ? whoIn(room) : roomFacts(room, ownName);
+        const avatar = (who, index) => html`<span class=${`avatar small tint-${index % 4}`}>${initials(who)}</span>`;
+        const names = members.length ? members.map((member) => member.name) : room.were_in;
         return html`<li class="room-row" data-room=${room.id}>
-      <span class="avatars" aria-hidden="true">${members.slice(0, 3).map(avatar)}${members.length ? nothing : icon('people')}</span>
-      <span class="title"><b>${facts.plan}</b><code>${room.id}</code></span><span class="who">${facts.who}</span>
-      <button aria-label=${say.joinOf(facts)} @click=${() => enter(room.id, room.plan)}>${say.join}</button></li>`;
+      <span class="avatars" aria-hidden="true">${names.slice(0, 3).map(avatar)}${names.length ? nothing : icon('people')}</span>
+      <span class="title"><b>${name}</b><span class="dim">${[plan?.patient, room.name && title].filter(Boolean).join(', ')}</span></span><span class="who">${facts}</span>
+      <button aria-label=${say.joinOf({ room: name, who: facts })} @click=${() => state.goOn(room)}>${say.goIn}</button></li>`;
       },
     )}</ul></section>`;
 }

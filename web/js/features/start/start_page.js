@@ -7,12 +7,16 @@ import { UploadsState } from './uploads.js';
 import { roomOf } from '../../net/address.js';
 import { brand } from '../../shell/banner.js';
 import { deleteDialog, watchDialog } from './delete_dialog.js';
-import { number, seconds } from '../../parts/format.js';
+import { seconds } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
 import { askName, nameButton, roomsList } from './lobby.js';
+import { meetingsToday } from './meeting_list.js';
+import { MeetingsState } from './meetings.js';
 import { mount } from '../../parts/mount.js';
-import { planList, refusalOf } from './plan_list.js';
+import { places } from './places.js';
+import { planList } from './plan_list.js';
+import { refusalOf } from './plan_row.js';
 import { reportLines } from '../../parts/report.js';
 import { openDroppedSnapshot } from '../report/later_snapshots.js';
 import { dropZone, listenDrops } from './upload.js';
@@ -29,7 +33,9 @@ export function startPage(host, world) {
     arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)),
     limit: () => state.version.value?.max_upload_bytes ?? Infinity,
   });
-  const unmount = mount(host, () => page(state, uploads, world));
+  const meetings = new MeetingsState(world);
+  const unmount = mount(host, () => page(state, uploads, meetings, world));
+  const unkey = listenForSearch(host);
   const unwatch = watchDialog(host, state);
   const unlisten = listenDrops(uploads, (file) => openDroppedSnapshot(world.api, file, world.enter));
   let newest = 0;
@@ -45,8 +51,11 @@ export function startPage(host, world) {
     newest = Math.max(newest, key);
   });
   state.start();
+  meetings.start();
   return () => {
     state.stop();
+    meetings.stop();
+    unkey();
     uploads.stop();
     unlisten();
     unwatch();
@@ -55,21 +64,34 @@ export function startPage(host, world) {
   };
 }
 
+/** "/" anywhere but in a text goes to the search. */
+function listenForSearch(host) {
+  const press = (event) => {
+    const isPlain = event.key === '/' && !event.ctrlKey && !event.metaKey && !event.altKey;
+    if (!isPlain || event.target.matches?.('input, textarea, select') || document.querySelector('dialog[open]')) return;
+    event.preventDefault();
+    host.querySelector('.search input')?.focus();
+  };
+  addEventListener('keydown', press);
+  return () => removeEventListener('keydown', press);
+}
+
 const reveal = (host, plan) => host.querySelector(`[data-plan="${CSS.escape(plan)}"]`)?.scrollIntoView({ block: 'nearest' });
 
-const page = (state, uploads, { enter, ownName, session, thumbnails }) => html`<div class="start">
-  <header class="banner">${brand()}<span class="grow"></span>
-    <label class="search">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(
-      event,
-    ) => {
-      state.search.value = event.target.value;
-    }}></label>
+const page = (state, uploads, meetings, world) => {
+  const { enter, ownName, session } = world;
+  const isToday = state.place.value.kind === 'today';
+  return html`<div class="start">
+  <header class="banner">${brand()}
+    <label class="search" data-keys="/">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(event) => state.show({ search: event.target.value })}><kbd aria-hidden="true">/</kbd></label><span class="grow"></span>
     ${join(state, enter)}${session.value?.who() ?? nameButton(state, ownName)}</header>
-  <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${roomsList(state, enter)}${planList(state, uploads, thumbnails)}</main>
+  ${places(state, meetings)}
+  <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${isToday ? meetingsToday(meetings, state) : nothing}${planList(state, uploads, world)}${isToday ? roomsList(state, ownName) : nothing}</main>
   <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div>
     ${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">${say.research}</b></footer>
   ${deleteDialog(state, ownName)}</div>`;
+};
 
 /** Notices about the server, not about one plan. */
 const notices = (state) => html`${
@@ -144,7 +166,5 @@ function serverStatus(state) {
   const version = state.version.value;
   if (!version) return nothing;
   const gl = version.gl;
-  const n = (state.plans.value ?? []).filter((plan) => plan.state === 'ready').length;
-  return html`<span class="badge live">${icon('ready', 12)}<span>${say.serverReady}</span></span><span>${say.inUse({ count: number(n), n })}</span>
-    <span class="dim wide">${[gl?.back_end, gl?.renderer].filter(Boolean).join(', ')}</span><span class="dim wide">Beamroom ${version.version}</span>`;
+  return html`<span class="badge live">${icon('ready', 12)}<span>${say.serverReady}</span></span><span class="dim wide">${[gl?.back_end, gl?.renderer].filter(Boolean).join(', ')}</span><span class="dim wide">Beamroom ${version.version}</span>`;
 }

@@ -90,9 +90,8 @@ function row(uploads, upload) {
   const hasFailed = upload.state === 'failed';
   const [dismiss, cancel] = [() => uploads.dismiss(upload.key), () => uploads.cancel(upload.key)];
   return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><span class="thumb">${icon(hasFailed ? 'error' : 'upload')}</span><div class="title">
-        <b>${upload.name}</b><code>${say.anUpload}</code></div><div class="parts"></div>
-      <div class="end size">${bytes(upload.bytes)}</div>
-      <div class="plan-state">${hasFailed ? html`<span class="err">${icon('error')} ${say.refused}</span>` : html`<b>${say.uploading}</b>`}</div>
+        <b>${upload.name}</b><code>${say.anUpload}</code></div><div class="person"><span>${bytes(upload.bytes)}</span></div>
+      <div class="states plan-state">${hasFailed ? html`<span class="err">${icon('error')} ${say.refused}</span>` : html`<b>${say.uploading}</b>`}</div>
       <div class="end buttons-of">${hasFailed ? html`<button @click=${dismiss}>${say.dismiss}</button>` : html`<button @click=${cancel}>${icon('close')}<span>${say.cancel}</span></button>`}</div></div>
     ${
       hasFailed

@@ -3,4 +3,5 @@ import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('start', {
   nobody: 'nobody in it now',
+  you: 'you',
 });

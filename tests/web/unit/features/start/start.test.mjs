@@ -14,12 +14,13 @@ const later = () =>
     setTimeout(done, 5);
   });
 const clock = { now: () => 0, setTimeout: (run) => setTimeout(run, 1), clearTimeout };
+const facts = { patient: '', label: '', date: '', approval: '', n_patients: 0, n_plans: 0, rooms: [], n_rooms: 0 };
 const plans = [
-  { id: 'head', name: 'Head', state: 'ready', parts: ['CT'], n_bytes: 9, n_warnings: 1, has_plan_file: true },
-  { id: 'broken', name: 'Broken', state: 'unreadable', parts: [], n_bytes: 0, reason: 'no ct.nii', has_plan_file: true },
-  { id: 'letters', name: 'letters', state: 'unreadable', parts: [], n_bytes: 0, reason: 'nothing in it', has_plan_file: false },
-  { id: 'sent', name: 'sent', state: 'unreadable', parts: [], n_bytes: 0, reason: 'nothing in it', has_plan_file: false, uploaded: true },
+  { ...facts, id: 'head', name: 'Head', state: 'ready', parts: ['CT'], n_bytes: 9, n_warnings: 1, has_plan_file: true },
+  { ...facts, id: 'broken', name: 'Broken', state: 'unreadable', parts: [], n_bytes: 0, reason: 'no ct.nii', has_plan_file: true },
+  { ...facts, id: 'sent', name: 'sent', state: 'unreadable', parts: [], n_bytes: 0, reason: 'nothing in it', uploaded: true },
 ];
+const counts = { total: 3, of: 3, next: null, folders: [], n_all: 3, n_uploads: 1, n_no_plans: 1 };
 const rooms = [
   {
     id: 'r-1',
@@ -34,34 +35,62 @@ const rooms = [
 const busy = new Problem({ type: '/problems/busy', status: 503, detail: '4 plans are open and in use, which is as many as may be' });
 
 function start(api = {}) {
-  const entered = [];
+  const [entered, asked] = [[], []];
   const state = new PlansState({
     clock,
     enter: (...where) => entered.push(where),
     api: {
-      plans: async () => ({ plans }),
+      call: async (_method, path, { body }) => {
+        assert.equal(path, 'plans/search');
+        asked.push(body);
+        return { plans, ...counts };
+      },
       rooms: async () => ({ rooms }),
       version: async () => ({}),
       plan: async () => ({ report: null }),
       ...api,
     },
   });
-  return { state, entered };
+  return { state, entered, asked };
 }
 
-test('a folder that nobody meant as a plan is counted apart; a broken plan and a refused upload stay in the list', async () => {
-  const { state } = start();
+test('the server is asked for one page of the place, text and order that are shown; a late answer to an older question is dropped', async () => {
+  const answers = [];
+  const asked = [];
+  const { state } = start({
+    call: (_method, _path, { body }) => {
+      asked.push(body);
+      return new Promise((done) => {
+        answers.push((id) => done({ plans: [{ ...plans[0], id }], ...counts, next: 'head' }));
+      });
+    },
+  });
   state.start();
+  assert.deepEqual(asked, [{ text: '', folder: '', sort: 'used', kind: 'plan', limit: 50, cursor: '' }]);
+  state.show({ search: ' 419 ' });
   await later();
+  assert.equal(asked[1].text, '419');
+  answers[1]('new');
+  await later();
+  answers[0]('old');
+  await later();
+  assert.equal(state.plans.value[0].id, 'new');
+  state.turn(true);
+  assert.equal(asked.at(-1).cursor, 'head');
+  state.show({ place: { kind: 'folder', name: 'neuro' } });
+  await later();
+  assert.deepEqual([asked.at(-1).folder, asked.at(-1).cursor], ['neuro', ''], 'another place begins at its first page');
+  state.show({ place: { kind: 'no-plans', name: '' } });
+  await later();
+  assert.deepEqual([asked.at(-1).folder, asked.at(-1).kind], ['', 'no-plan']);
   state.stop();
-  assert.deepEqual(
-    state.shown.value.map(({ id }) => id),
-    ['head', 'broken', 'sent'],
-  );
-  assert.deepEqual(
-    state.folders.value.map(({ id }) => id),
-    ['letters'],
-  );
+});
+
+test('going on enters the last room and makes none', async () => {
+  const { state, entered } = start({ makeRoom: () => assert.fail('a room was made') });
+  state.goOn({ id: 'r-9', plan: 'head' });
+  state.stop();
+  assert.deepEqual(entered, [['r-9', 'head']]);
 });
 
 test('a server that is full says so for itself, and the plan is not refused', async () => {

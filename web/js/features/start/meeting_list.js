@@ -1,0 +1,125 @@
+// The meetings of today on the start page: each with its agenda, which its people put in order, and the way into it.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { repeat } from '../../../lib/directives/repeat.js';
+import { icon } from '../../parts/icons.js';
+import { when } from '../../parts/when.js';
+import { say } from './later_words.js';
+import { titleOf } from './plan_row.js';
+
+/** The value of a field datetime-local, by the clock of this browser. */
+const fieldTime = (ms) => (ms ? new Date(ms - new Date(ms).getTimezoneOffset() * 60000).toISOString().slice(0, 16) : '');
+
+const closesByEscape = (meetings) => (event) => {
+  if (event.key === 'Escape') meetings.form.value = null;
+};
+
+function meetingForm(meetings, { id = '', name = '', starts_ms = null } = {}) {
+  const save = (event) => {
+    event.preventDefault();
+    const fields = new FormData(event.target);
+    const starts = Date.parse(fields.get('starts'));
+    if (fields.get('name').trim()) void meetings.save(id, { name: fields.get('name').trim(), starts_ms: starts || null });
+  };
+  return html`<form class="meeting-form" @submit=${save} @keydown=${closesByEscape(meetings)}>
+    <label>${say.meetingName}<input name="name" required maxlength="80" autocomplete="off" .value=${name}></label>
+    <label>${say.meetingStarts}<input name="starts" type="datetime-local" .value=${fieldTime(starts_ms)}></label>
+    <div class="buttons"><button class="primary">${id ? say.save : say.makeMeeting}</button><button type="button" @click=${() => {
+      meetings.form.value = null;
+    }}>${say.cancel}</button></div><p class="note">${say.meetingNameIsSeen}</p></form>`;
+}
+
+function caseForm(meetings, { id, cases }, state) {
+  const taken = new Set(cases.map(({ plan }) => plan));
+  const plans = (state.plans.value ?? []).filter((plan) => !taken.has(plan.id) && plan.state !== 'unreadable');
+  const add = (event) => {
+    event.preventDefault();
+    const plan = new FormData(event.target).get('plan');
+    if (plan) void meetings.add(id, plan);
+  };
+  return html`<form class="case-form" @submit=${add} @keydown=${closesByEscape(meetings)}><label>${say.planOfCase}<select name="plan">${plans.map((plan) => html`<option value=${plan.id}>${[plan.patient, titleOf(plan), plan.id].filter(Boolean).join(' · ')}</option>`)}</select></label>
+    <button class="primary" ?disabled=${!plans.length}>${say.addIt}</button><p class="note">${say.findOthers}</p></form>`;
+}
+
+function stateOf(one) {
+  if (one.state === 'now')
+    return html`<span class="now">${say.nowSince({ word: html`<b>${say.now}</b>`, time: when(one.since_ms) })}</span>`;
+  if (one.state === 'decided') return html`<span class="ok">${icon('check', 12)} ${say.decidedAt({ time: when(one.decided_ms) })}</span>`;
+  if (one.does_not_fit) return html`<span class="warn">${icon('warning', 12)} ${say.doseDoesNotFit}</span>`;
+  return html`<span class="dim">${{ left: say.leftOpen, closed: say.closedToYou }[one.state] ?? say.open_}</span>`;
+}
+
+const approvals = { APPROVED: say.approved, UNAPPROVED: say.unapproved, REJECTED: say.rejected };
+
+/** A case of the agenda; who may edit drags it, moves it by its buttons, or takes it off. */
+function caseRow(meetings, meeting, one, index) {
+  const { id, cases, may } = meeting;
+  const canMove = may.edit && cases.length > 1;
+  const entered = ['now', 'decided', 'left'].includes(one.state);
+  const drop = (event) => {
+    event.preventDefault();
+    const moved = meetings.dragged.value;
+    meetings.dragged.value = '';
+    const from = cases.findIndex((other) => other.id === moved);
+    if (from >= 0 && from !== index) void meetings.move(id, moved, from > index ? one.id : (cases[index + 1]?.id ?? null));
+  };
+  const title = one.label || one.plan;
+  const facts = [title, approvals[one.approval]].filter(Boolean).join(' · ');
+  const name = one.patient || title || say.caseN({ n: index + 1 });
+  return html`<li class="case" data-case=${one.id} data-state=${one.state} draggable=${canMove ? 'true' : 'false'} @dragstart=${(event) => {
+    meetings.dragged.value = one.id;
+    event.dataTransfer.effectAllowed = 'move';
+  }} @dragend=${() => {
+    meetings.dragged.value = '';
+  }} @dragover=${(event) => meetings.dragged.value && event.preventDefault()} @drop=${drop}>
+    <span class="n">${index + 1}</span><b class="whom">${one.state === 'closed' ? say.caseN({ n: index + 1 }) : one.patient || say.unknown}</b><span class="dim about">${facts}</span><span class="case-state">${stateOf(one)}</span>
+    ${
+      may.edit
+        ? html`<span class="case-acts"><button class="icon-button small" ?disabled=${!canMove || index === 0} aria-label=${say.moveUp({ name })} title=${say.moveUp({ name })} @click=${() => meetings.step(meeting, index, -1)}>${arrow(true)}</button>
+      <button class="icon-button small" ?disabled=${!canMove || index === cases.length - 1} aria-label=${say.moveDown({ name })} title=${say.moveDown({ name })} @click=${() => meetings.step(meeting, index, 1)}>${arrow(false)}</button>
+      <button class="icon-button small" ?disabled=${entered} aria-label=${say.takeOff({ name })} title=${say.takeOff({ name })} @click=${() => meetings.remove(id, one.id)}>${icon('close', 12)}</button></span>`
+        : nothing
+    }</li>`;
+}
+
+const arrow = (isUp) => html`<span class=${isUp ? 'turned' : ''}>${icon('chevronDown', 12)}</span>`;
+
+const states = { running: say.runs, over: say.isOver };
+
+function meetingCard(meetings, meeting, state) {
+  const { id, name, cases, may, n_in, starts_ms } = meeting;
+  const form = meetings.form.value?.meeting === id ? meetings.form.value.kind : '';
+  const open = (kind) => () => {
+    meetings.form.value = form === kind ? null : { meeting: id, kind };
+  };
+  const about = [starts_ms && when(starts_ms), states[meeting.state], n_in > 0 && say.nIn({ n: n_in })].filter(Boolean).join(' · ');
+  const canGoIn = meeting.state !== 'over' && cases.length > 0 && (meeting.state === 'running' || may.advance);
+  return html`<section class="meeting" data-meeting=${id} aria-labelledby=${`meeting-${id}`}><div class="list-head"><h2 id=${`meeting-${id}`}>${name}</h2><span class="dim">${about}</span><span class="grow"></span>
+      ${canGoIn ? html`<button class="primary" @click=${() => meetings.goIn(id)}>${meeting.state === 'running' ? say.goIn : say.begin}</button>` : nothing}</div>
+    ${cases.length ? html`<ol class="agenda">${cases.map((one, index) => caseRow(meetings, meeting, one, index))}</ol>` : html`<p class="empty">${say.noCases}</p>`}
+    ${
+      may.edit
+        ? html`<div class="meeting-acts"><button aria-expanded=${form === 'case'} @click=${open('case')}>${icon('plus', 12)}<span>${say.addCase}</span></button>
+      <button class="ghost" aria-expanded=${form === 'meeting'} @click=${open('meeting')}>${say.nameAndTime}</button><span class="note">${say.nextTakesAlong}</span></div>`
+        : nothing
+    }
+    ${form === 'case' ? caseForm(meetings, meeting, state) : form === 'meeting' ? meetingForm(meetings, meeting) : nothing}</section>`;
+}
+
+/** @param {import('./meetings.js').MeetingsState} meetings @param {object} state the plans, for new cases */
+export function meetingsToday(meetings, state) {
+  const shown = meetings.today.value.map(({ id }) => meetings.agendas.value[id]).filter(Boolean);
+  const isNew = meetings.form.value?.meeting === '';
+  return html`<div class="meetings">${repeat(
+    shown,
+    ({ id }) => id,
+    (meeting) => meetingCard(meetings, meeting, state),
+  )}
+    ${meetings.error.value ? html`<p class="err" role="alert">${icon('error')} ${meetings.error.value}</p>` : nothing}<p class="as-status" role="status">${meetings.said.value}</p>
+    ${
+      isNew
+        ? meetingForm(meetings)
+        : html`<button class="ghost new-meeting" @click=${() => {
+            meetings.form.value = { meeting: '', kind: 'meeting' };
+          }}>${icon('plus', 12)}<span>${say.newMeeting}</span></button>`
+    }</div>`;
+}
