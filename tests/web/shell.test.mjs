@@ -217,5 +217,36 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
+  it('a tool has the whole picture: a measure begins on a pin; menus stand in their boxes and in the window', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`rooms/${room}`);
+    await full(page);
+    await page.keyboard.press('n');
+    await page.locator('textarea').fill('Here.');
+    await page.keyboard.press('Control+Enter');
+    const pin = page.locator('#picture-2 .note-pin');
+    await pin.waitFor();
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.press('m');
+    const box = await pin.boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 60, box.y + 40, { steps: 3 });
+    await page.mouse.up();
+    for (let n = 0; n < 100 && !Object.keys((await world.scene(room)).measures).length; n++) await page.waitForTimeout(30);
+    assert.equal(Object.keys((await world.scene(room)).measures).length, 1);
+    await page.keyboard.press('Escape');
+    await page.getByRole('button', { name: 'Panes', exact: true }).click();
+    const menu = page.locator('.view-panes');
+    await menu.getByText('Clipped volume with wash').waitFor();
+    assert.ok(await menu.evaluate((element) => element.scrollWidth <= element.clientWidth), 'the keys are in the box');
+    await page.keyboard.press('Escape');
+    await page.setViewportSize({ width: 390, height: 844 });
+    await page.getByRole('button', { name: 'Snapshot' }).click();
+    await page.locator('.snapshots').waitFor();
+    await page.waitForFunction(() => document.querySelector('.snapshots').getBoundingClientRect().left >= 0);
+    await page.context().close();
+  });
+
   it('has had no error', () => assert.deepEqual(world.errors, []));
 });

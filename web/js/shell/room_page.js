@@ -38,6 +38,7 @@ const lateMs = 150; // without the room's plan, after which the panels are drawn
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
 const filesBar = later(() => import('./files_bar.js'), 'js/features/fits/fit.css');
+const popovers = later(() => import('./popovers.js'));
 const splitters = later(() => import('./splitters.js'), 'js/shell/splitters.css');
 const drawer = (world) => (world.ui.arrangement.value.drawer ? features.map(({ drawer: own }) => own?.draw(world)) : nothing);
 const dialogs = ['help', ...features.flatMap((feature) => feature.dialogs ?? [])];
@@ -77,6 +78,7 @@ export function roomPage(
     redraw.watch(globalThis),
     loadBeforeClicks(),
     effect(() => splitters.loaded.value?.placeSplitters(host, ui)),
+    effect(() => popovers.loaded.value?.keepInside(host, ui)),
     adapt(ui),
     effect(() => layOut(host.querySelector('.room'), ui)),
   ); // before the panes measure themselves: views open at their sizes
@@ -179,7 +181,7 @@ function whenKnown(room, clock, act) {
 /** Gives the style sheets the arrangement. */
 function layOut(element, ui) {
   const { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout, visible } = ui.arrangement.value;
-  Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout });
+  Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout, tool: ui.tool.value });
   for (const [name, value] of Object.entries(splitVariables(ui.splitters.value))) element.style.setProperty(name, value);
   const panes = [...element.querySelectorAll('.pane')];
   const cells = [...ui.panes[layout === '2x1' || layout === '1x2' ? 'two' : 'four'].value];
@@ -229,6 +231,7 @@ function loadBeforeClicks() {
     pointedCard.load();
     undoNames.load();
     splitters.load();
+    popovers.load();
   };
   for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
   return () => abort.abort();
