@@ -153,6 +153,7 @@ static void draw(void *context, struct outcome *outcome)
         scene.clip.axial_high.enabled = scene.clip.free.enabled = true;
         scene.clip.free.normal = vec3(1, -1, 1);
         scene.clip.cap.regions = scene.clip.cap.outlines = true;
+        scene.image.window.gamma = 1.5; /* its table of tones */
     }
     if (wanted->has_tracks) {
         add_tracks(plan);

@@ -261,8 +261,8 @@ static bool is_painted(const struct image *with, const struct image *without, do
     return false;
 }
 
-/* From the front; the box is 80 mm wide and high: its edges are 40 mm from the middle, lines through the crosshair end
- * at 48 mm, ticks are every 10 mm and 3 pixels to either side, 6 every 50 mm. */
+/* The box is 80 mm wide and high, seen from the front: its edges are 40 mm from the middle, lines through the crosshair
+ * end at 48 mm, ticks are every 10 mm and 3 pixels to either side, 6 every 50 mm. */
 static void axes_stand_through_the_crosshair_as_a_box_or_in_the_corner(void **state)
 {
     (void)state;

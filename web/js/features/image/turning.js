@@ -25,7 +25,7 @@ export function turnedFor(camera, axis, degPerS, seconds) {
  * Turns a view, a step for each picture that comes, until something is dragged or turned in a pane, Esc, a hidden tab, or another presenter.
  * No step of it is one of undo. Sets world.turning, which says so in the pane's header.
  */
-export function startTurning(world, { clock = () => performance.now(), page = document } = {}) {
+export function startTurning(world, { clock = () => performance.now(), page = document, frames = globalThis } = {}) {
   const { room } = world;
   const { actions } = active3d(world);
   const { view } = actions;
@@ -53,12 +53,12 @@ export function startTurning(world, { clock = () => performance.now(), page = do
   const onPane = (event) => event.target.closest?.('.pane-body') && stop();
   const onHidden = () => page.hidden && stop();
   const unwatch = effect(() => {
-    if (view.painted.value && !due) due = requestAnimationFrame(step);
+    if (view.painted.value && !due) due = frames.requestAnimationFrame(step);
   });
   function stop() {
     unwatch();
     clearTimeout(waiting);
-    cancelAnimationFrame(due);
+    frames.cancelAnimationFrame(due);
     page.removeEventListener('keydown', onKey, true);
     page.removeEventListener('pointerdown', onPane, true);
     page.removeEventListener('wheel', onPane, true);
