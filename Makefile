@@ -92,6 +92,7 @@ DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 UNPACK_SRC := $(filter-out %_run.c,$(sort $(wildcard server/renderer/unpack*.c)))
 CLI_SRC := $(call c_files,server/cli)
+PRINTER_SRC := $(call c_files,server/printer)
 GEN_SRC := $(GEN)/wire_gen.c $(GEN)/packets_gen.c $(GEN)/problem_gen.c $(GEN)/rights_gen.c $(GEN)/openapi.c
 
 # The inner loops of the software rasteriser are written to be vectorised. No value changes by that; what does is the exception
@@ -114,6 +115,12 @@ EXTRA_core_surface_isosurface_bricks := -O3 -fno-trapping-math
 EXTRA_core_base_image_reduce := -O3
 # FreeType's headers; the font that is compiled in is core/annotate/font.c's.
 EXTRA_core_annotate_font := -isystem /usr/include/freetype2
+# Pango's and Cairo's headers, as those of the system.
+PANGO_FLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags pangocairo 2>/dev/null))
+PANGO_LIBS := -lpangocairo-1.0 -lpango-1.0 -lgobject-2.0 -lglib-2.0 -lcairo
+EXTRA_server_printer_draw := $(PANGO_FLAGS)
+EXTRA_server_printer_draw_blocks := $(PANGO_FLAGS)
+EXTRA_server_printer_sheet := $(PANGO_FLAGS)
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(1)))
 # What names the version is compiled anew when it changes.
@@ -142,7 +149,10 @@ $(B)/beamroom-render: $(call obj,$(RENDERER_SRC)) $(B)/libwire.a $(B)/libcore.a
 $(B)/beamroom: $(call obj,$(CLI_SRC)) $(B)/libwire.a $(B)/libcore.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS)
 
-PROGRAMS := $(if $(DAEMON_SRC),$(B)/beamroomd) $(if $(RENDERER_SRC),$(B)/beamroom-render) $(if $(CLI_SRC),$(B)/beamroom)
+$(B)/beamroom-paper: $(call obj,$(PRINTER_SRC) server/renderer/confine.c server/renderer/seccomp.c) $(B)/libwire.a $(B)/libcore.a
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(PANGO_LIBS) -lcjson -lm
+
+PROGRAMS := $(if $(DAEMON_SRC),$(B)/beamroomd) $(if $(RENDERER_SRC),$(B)/beamroom-render) $(if $(CLI_SRC),$(B)/beamroom) $(if $(PRINTER_SRC),$(B)/beamroom-paper)
 .DEFAULT_GOAL := all
 .PHONY: all programs
 all: programs web

@@ -12,7 +12,7 @@ check() { # check SENTENCE COMMAND...
 }
 rm -rf "$root"
 check "make install with DESTDIR and PREFIX" "${MAKE:-make}" install DESTDIR="$root" PREFIX=/usr SYSCONFDIR=/etc
-for program in beamroomd beamroom-render beamroom; do
+for program in beamroomd beamroom-render beamroom-paper beamroom; do
     check "$program is there" test -x "$root/usr/bin/$program"
     check "$program --help" "$root/usr/bin/$program" --help
     check "$program --version" "$root/usr/bin/$program" --version

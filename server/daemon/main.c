@@ -462,6 +462,7 @@ static bool serve(struct options *options, struct error *err)
     }
     if (service.tls)
         tls_close(service.tls);
+    http_stop_printing(http);
     net_destroy(net);
     http_destroy(http);
     front_destroy(front);

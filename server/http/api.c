@@ -103,6 +103,7 @@ static const struct {
     { "GET", "/api/v1/records/{record}", api_record },
     { "GET", "/api/v1/records/{record}/figures/{figure}", api_record_figure },
     { "GET", "/api/v1/records/{record}/paper", api_record_paper },
+    { "GET", "/api/v1/records/{record}/record.pdf", api_record_paper },
     { "GET", "/p/{saved}", api_permalink },
 };
 static const char in_room[] = "/api/v1/rooms/{room}";

@@ -9,6 +9,8 @@ struct api;
 
 /* max_upload_bytes 0: no uploads. */
 struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_bytes, const struct api_doors *doors);
+/* Ends what is being drawn as PDF, and lets nothing more begin: before the net ends, on another thread than its. */
+void api_stop_printing(struct api *api);
 void api_destroy(struct api *api);
 
 struct api_act;

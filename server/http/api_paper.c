@@ -11,10 +11,12 @@
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
+#include "server/http/printing.h"
 #include "server/paper/paper.h"
 
 struct paper_call { /* while the patient is asked for */
     cJSON *paper;
+    struct printing *printing;       /* with the pictures, of a call for the PDF; else NULL */
     char identity_hash[DIGEST_TEXT]; /* as it was kept; "": none was */
     char plan[64];
 };
@@ -55,6 +57,7 @@ static cJSON *make_paper(const struct api *api, const struct net_record *record,
 static void paper_call_destroy(struct paper_call *paper)
 {
     cJSON_Delete(paper->paper);
+    printing_destroy(paper->printing);
     free(paper);
 }
 
@@ -62,8 +65,14 @@ static void paper_call_destroy(struct paper_call *paper)
 static void answer_paper(struct call *call, struct paper_call *paper)
 {
     call->context = NULL;
-    call_answer_json(call, 200, paper->paper);
-    paper->paper = NULL;
+    if (paper->printing) {
+        struct printing *printing = paper->printing;
+        paper->printing = NULL;
+        printing_start(call->api, call, printing, paper->paper);
+    } else {
+        call_answer_json(call, 200, paper->paper);
+        paper->paper = NULL;
+    }
     paper_call_destroy(paper);
 }
 
@@ -128,22 +137,39 @@ static void name_patient(struct api *api, struct call *call, struct paper_call *
     paper_call_destroy(paper);
 }
 
+/* Reads the paper's size and copies the pictures for a call for the PDF. False with problem. */
+static bool begin_printing(const struct call *call, const struct net_record *record, struct printing **printing,
+                           struct problem *problem)
+{
+    const char *word = call_query(call, "paper");
+    const bool is_letter = word && strcmp(word, "letter") == 0;
+    *printing = NULL;
+    if (!strstr(call->route, "record.pdf"))
+        return true;
+    if (word && !is_letter && strcmp(word, "a4") != 0)
+        return problem_set(problem, PROBLEM_VALIDATION, "/paper", "enum", "paper is \"%.20s\", expected a4 or letter",
+                           word);
+    *printing = printing_create(record, is_letter, problem);
+    return *printing != NULL;
+}
+
 static void record_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
 {
     struct call *call = context;
     struct problem other;
     bool is_wanted;
+    struct printing *printing = NULL;
     if (!api_record_may_be_seen(call, records, n, problem))
         return;
     if (strcmp(records[0].kind, "decision") != 0)
         problem_set(&other, PROBLEM_CONFLICT, "", "kind",
                     "a %.20s stands on the paper of the decision that it was written under", records[0].kind);
-    else if (wants_identity(call, &is_wanted, &other)) {
+    else if (wants_identity(call, &is_wanted, &other) && begin_printing(call, &records[0], &printing, &other)) {
         struct paper_call *paper = mem_new(sizeof *paper);
         cJSON *body = read_text(records[0].body);
         const cJSON *kept = cJSON_GetObjectItemCaseSensitive(body, "kept");
         const char *hash = json_text(kept, "identity_sha256");
-        *paper = (struct paper_call){ .paper = make_paper(call->api, &records[0], body) };
+        *paper = (struct paper_call){ .paper = make_paper(call->api, &records[0], body), .printing = printing };
         (void)snprintf(paper->identity_hash, sizeof paper->identity_hash, "%.64s", hash ? hash : "");
         (void)snprintf(paper->plan, sizeof paper->plan, "%.63s", records[0].plan);
         cJSON_Delete(body);

@@ -1,6 +1,8 @@
 #pragma once
 /* The API's state: its jobs, and how many pictures, files and timings are under way. Internal to server/http; net
  * thread, but for the counters of calls. */
+#include <stdatomic.h>
+
 #include "server/http/api.h"
 
 enum {
@@ -41,8 +43,10 @@ struct api {
     uint64_t n_pictures;           /* ever requested */
     struct api_display *displays;  /* screens that look at rooms */
     struct api_listener *listeners;
-    size_t n_files, n_timings; /* under way */
-    size_t n_jobs;             /* ever made; job n is at index n % API_MAX_JOBS */
+    atomic_int n_printing;           /* PDFs under way */
+    atomic_bool is_printing_stopped; /* by http_stop_printing */
+    size_t n_files, n_timings;       /* under way */
+    size_t n_jobs;                   /* ever made; job n is at index n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6],
         n_calls_us; /* by status / 100, and time spent; counted by the HTTP thread, read by /metrics */
 };

@@ -552,6 +552,12 @@ void http_stop_posting(struct http *http)
     gate_close(http->posting);
 }
 
+void http_stop_printing(struct http *http)
+{
+    if (http)
+        api_stop_printing(http->api);
+}
+
 void http_destroy(struct http *http)
 {
     if (!http)

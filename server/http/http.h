@@ -29,4 +29,5 @@ NODISCARD struct http *http_create(struct net *net, struct front *front, const s
 /* Stopping, in this order: front_close, http_stop_posting (from then on calls are answered with 503), net_destroy
  * (which answers the calls it has), http_destroy (which stops the front), front_destroy. */
 void http_stop_posting(struct http *http);
+void http_stop_printing(struct http *http); /* api_stop_printing; http may be NULL */
 void http_destroy(struct http *http);

@@ -51,6 +51,8 @@ static const struct allowed_path {
     { "/etc/ld.so.conf.d", FS_READ, false },
     { "/etc/localtime", FS_READ, false },
     { "/etc/glvnd", FS_READ, false },
+    { "/etc/fonts", FS_READ, false },
+    { "/var/cache/fontconfig", FS_READ, false },
     { "/etc/drirc", FS_READ, false },
     { "/dev/null", FS_READ | LANDLOCK_ACCESS_FS_WRITE_FILE, false },
     { "/dev/zero", FS_READ, false },

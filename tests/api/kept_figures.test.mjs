@@ -1,7 +1,7 @@
 // Decisions are kept with what was shown: four pictures, the dose, its histogram and the limits of that moment, in a table that neither the end of the
 // room nor that of the plan touches; a renderer that is gone takes no decision along; --verify-audit knows every picture.
 import assert from 'node:assert/strict';
-import { execFileSync, spawnSync } from 'node:child_process';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { copyFileSync, cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -188,6 +188,130 @@ test('the paper is the same after weights, scene, name of the plan and time zone
   const refused = await call(`${api}/records/${signed.id}/paper`);
   assert.deepEqual([refused.status, refused.json.code], [409, 'kind']);
   assert.equal((await call(`${api}/records/${item.id}/paper?identity=maybe`)).status, 422);
+});
+
+/** Reads a PDF by pdftotext, pdfinfo and pdfimages of Poppler. */
+function read(pdf) {
+  const file = join(data, 'read.pdf');
+  writeFileSync(file, pdf);
+  const info = execFileSync('pdfinfo', [file], { encoding: 'utf8' });
+  return {
+    pages: execFileSync('pdftotext', ['-raw', file, '-'], { encoding: 'utf8', maxBuffer: 1 << 26 })
+      .split('\f')
+      .slice(0, -1),
+    n: Number(/Pages: +(\d+)/.exec(info)[1]),
+    size: /Page size: +([\d.]+) x ([\d.]+)/.exec(info).slice(1).map(Number),
+    images: execFileSync('pdfimages', ['-list', file], { encoding: 'utf8' }).split('\n').slice(2, -1),
+  };
+}
+
+test('the server draws the record as PDF: the same pages each time, every script, identity and number on each page', async () => {
+  const { client } = await enter('third');
+  await put(client, 'note', { text: 'Ελληνικά · 漢字かな · Привет · \u202Eexe.gnp\u202C <b>so</b> & so · שלום', anchor: null });
+  await put(client, 'note', { text: 'word '.repeat(390), anchor: null });
+  const item = await put(client, 'decision', { decision: 'accept', text: 'As shown' }),
+    at = `${api}/records/${item.id}/record.pdf`;
+  for (const [word, size] of [
+    ['a4', [595.276, 841.89]],
+    ['letter', [612, 792]],
+  ]) {
+    const { status, type, bytes } = await picture(`${at}?paper=${word}`);
+    assert.deepEqual([status, type], [200, 'application/pdf']);
+    const pdf = read(bytes);
+    assert.deepEqual(pdf.size, size);
+    assert.equal(pdf.pages.length, pdf.n);
+    for (const [n, text] of pdf.pages.entries()) {
+      assert.match(text, /PHANTOM[\s\S]*Research use only\. Not a medical device/);
+      assert.ok(text.includes(`Page ${n + 1} of ${pdf.n}`), text);
+    }
+    const squeezed = (text) => text.replace(/[\s\u202a-\u202e]/g, ''), // words break where a column ends
+      all = squeezed(pdf.pages.join(''));
+    for (const words of [
+      'As shown',
+      'Ελληνικά',
+      '漢字かな',
+      'Привет',
+      '[RLO]exe.gnp[PDF] <b>so</b> & so',
+      'Hashes in full',
+      'Figure 4: 3-D',
+    ])
+      assert.ok(all.includes(squeezed(words)), words);
+    assert.match(all, /[שלום]{4}/u);
+    assert.equal(pdf.images.filter((line) => / 1600 +1200 .* jpeg /.test(line)).length, 4, 'the kept JPEGs as they are');
+  }
+  assert.equal((await picture(`${at}?paper=a3`)).status, 422);
+  const both = await Promise.all(
+    [1, 2].map(async () =>
+      read((await picture(at)).bytes)
+        .pages.join('')
+        .replace(/printed .*/g, ''),
+    ),
+  );
+  assert.equal(both[0], both[1]);
+});
+
+test('the process that draws gives equal bytes for equal papers, and takes hostile ones without harm', async () => {
+  const draw = (json, { magic = 0x42525050, n = Buffer.byteLength(json) } = {}) =>
+    new Promise((done) => {
+      const child = spawn(join(bin, 'beamroom-paper'), ['--serve'], { stdio: ['ignore', 'ignore', 'pipe', 'pipe'] });
+      const head = Buffer.alloc(28),
+        parts = [];
+      let why = '';
+      child.stderr.on('data', (text) => {
+        why += text;
+      });
+      head.writeUInt32LE(magic, 0);
+      head.writeUInt32LE(n, 8);
+      child.stdio[3].on('data', (bytes) => parts.push(bytes));
+      child.stdio[3].on('error', () => {});
+      child.on('close', (status) => done({ status, why, pdf: Buffer.concat(parts) }));
+      child.stdio[3].end(Buffer.concat([head, Buffer.from(json)]));
+    });
+  const long = `${'x'.repeat(10000)}\u202E<markup>&amp;${'\u0001'.repeat(50)}`;
+  const table = {
+    type: 'table',
+    columns: [
+      { text: 'a', percent: 50 },
+      { text: 'b', percent: 1e9 },
+    ],
+    rows: [[{ text: long }], [{}, { text: 'y '.repeat(9000) }]],
+  };
+  const chart = { type: 'chart', x: long, y: '', curves: [{ percent: [1e300, -5, null], from: 1e300, width: 1e300, dash: 99 }, {}] };
+  const paper = JSON.stringify({
+    title: long,
+    identity: { fields: Array(9).fill({ label: long, text: long, more: long }), line: long },
+    time_ms: 1e18,
+    blocks: [
+      table,
+      chart,
+      { type: 'figures', figures: [{ place: 77 }, { place: 0, width_px: 1e9 }] },
+      { type: 'text', text: long },
+      { type: 'x' },
+      7,
+    ],
+  });
+  const [one, two] = [await draw(paper), await draw(paper)];
+  assert.equal(one.status, 0, one.why);
+  assert.equal(one.pdf.subarray(0, 5).toString(), '%PDF-');
+  assert.equal(sha256(one.pdf), sha256(two.pdf));
+  assert.ok(read(one.pdf).n > 3);
+  for (const [json, options] of [
+    ['{', {}],
+    ['{}', { magic: 1 }],
+    ['{}', { n: 1 << 30 }],
+    ['{}', { n: 99 }],
+  ]) {
+    const { status, pdf } = await draw(json, options);
+    assert.deepEqual([status, pdf.length], [1, 0]);
+  }
+  const pages = await draw(
+    JSON.stringify({
+      blocks: Array(600)
+        .fill([{ type: 'page' }, { type: 'text', text: 'x' }])
+        .flat(),
+    }),
+  );
+  assert.deepEqual([pages.status, pages.pdf.length], [1, 0], 'too many pages');
 });
 
 test('the patient stands masked on paper, and in full for who may read that while the files name the same one', async () => {

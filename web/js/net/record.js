@@ -26,3 +26,4 @@ export async function fetchPaper(id, isNamed) {
 
 /** Where a kept picture is. @param {number} place from 0 on */
 export const pathOfFigure = (id, place) => `${pathOf(id)}/figures/${place + 1}`;
+export const pathOfPdf = (id, isNamed) => `${pathOf(id)}/record.pdf?identity=${isNamed}`;

@@ -64,6 +64,7 @@ export const say = sentences('record.later', {
   export: 'Export',
   page: 'Page to print',
   printDecision: 'Print the record of this decision',
+  pdf: 'PDF',
   named: 'with the patient’s identity',
   inTheBand: '{name}: in the band, {percent} % has no dose',
   exportIs: 'An export is recorded. {command} checks what was recorded.',

@@ -2,7 +2,7 @@
 // draws alike as PDF. On the sheets of the report (js/features/report/printout.css); what they say is the server's.
 import { html, nothing, svg } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
-import { fetchPaper, pathOfFigure } from '../../net/record.js';
+import { fetchPaper, pathOfFigure, pathOfPdf } from '../../net/record.js';
 import { printable } from '../../room/exports.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
@@ -39,6 +39,7 @@ function paperDialog(world) {
   return html`<section class="printout record-print" role="dialog" aria-modal="true" tabindex="-1" aria-label=${say.toPrint}>
     <div class="printout-bar"><b>${say.toPrint}</b><span class="grow"></span>
       ${room.seesIdentity.value ? html`<label class="paper-named"><input type="checkbox" .checked=${isNamed} @change=${name}> ${say.named}</label>` : nothing}
+      <a class="button" href=${pathOfPdf(id, isNamed)} download>${say.pdf}</a>
       <button class="primary" @click=${print}>${icon('print')}<span>${say.print}</span></button>
       <button class="icon-button" aria-label=${say.close} @click=${close}>${icon('close')}</button></div>${sheet(shown.value)}</section>`;
 }
