@@ -6,9 +6,58 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { call, demo, startDaemon, until } from './daemon.mjs';
+import { FullDisk } from './full_disk.mjs';
 import { Client } from './ws_client.mjs';
 
 const password = 'correct horse';
+
+test('on a full disk nothing of a meeting is accepted, and what was answered is there afterwards', async (t) => {
+  const disk = new FullDisk();
+  if (disk.missing) {
+    disk.remove();
+    t.skip(disk.missing);
+    return;
+  }
+  let daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
+  try {
+    const api = (path, method, body) => call(`${daemon.url}/api/v1/meetings${path}`, method, body);
+    const made = (await api('', 'POST', { name: 'Board', cases: [{ plan: 'phantom' }, { plan: 'phantom' }] })).json;
+    const go = (from) => api(`/${made.id}/case`, 'POST', { case: 'next', from });
+    assert.equal((await go(null)).status, 200);
+    disk.fill(daemon.child);
+    const rename = (name) => api(`/${made.id}`, 'PATCH', { name });
+    let kept = 'Board';
+    for (let n = 0; n < 200; n++) {
+      const name = `Board ${n} ${'x'.repeat(60)}`; // what is left of the last block is used up
+      const { status } = await rename(name);
+      if (status !== 200) break;
+      kept = name;
+    }
+    const refused = await go('c1');
+    assert.deepEqual([refused.json.type, refused.json.code], ['/problems/storage', disk.code]);
+    for (const answer of [
+      await rename('Lost'),
+      await api('', 'POST', { name: 'Lost' }),
+      await api(`/${made.id}/links`, 'POST', { role: 'observer' }),
+    ])
+      assert.equal(answer.json.type, '/problems/storage');
+    const { name, case: now, cases } = (await api(`/${made.id}`)).json;
+    assert.deepEqual([name, now, cases[1].state], [kept, 1, 'open'], 'nothing has changed for those who look');
+    disk.free(daemon.child);
+    await until(
+      () => go('c1'),
+      ({ status }) => status === 200,
+    );
+    daemon.child.kill('SIGKILL');
+    await new Promise((done) => daemon.child.on('exit', done));
+    daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
+    const again = (await api(`/${made.id}`)).json;
+    assert.deepEqual([again.name, again.case, (await api('')).json.meetings.length], [kept, 2, 1]);
+  } finally {
+    await daemon.stop();
+    disk.remove();
+  }
+});
 
 describe('A meeting of three cases', { concurrency: false }, () => {
   let folder, daemon, args, plans, pat, rae, zoe, mia, meeting, cases;
@@ -272,6 +321,17 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     assert.deepEqual((await people.rae3.message('meeting')).n_now, 3);
     people.wall3 = await welcomed({}, people.room2, { link: people.wallLink.token }).catch(() => null);
     assert.equal(people.wall3, null, 'the link leads to the case of now alone');
+  });
+
+  test('a wall that is started anew at the address that it was given goes to the case of now', async () => {
+    const link = await ok(`/rooms/${people.room}/links`, pat, 'POST', { role: 'wall' });
+    const wall = await welcomed({}, people.room, { link: link.token });
+    const told = await wall.message('meeting.case');
+    assert.deepEqual([told.open, told.asks, told.n, told.room], [true, false, 3, people.room3]);
+    const there = await welcomed({}, told.room, seatIn(told));
+    assert.equal((await there.message('meeting')).n_now, 3);
+    wall.cut();
+    there.cut();
   });
 
   test('an ended link puts out who came by it in every room, and lets nobody in again', async () => {
