@@ -521,6 +521,15 @@ static void fields_registration(struct fields *fields, struct plan_registration 
     fields_index(fields, &registration->patient, plan->n_patients);
 }
 
+static void fields_box(struct fields *fields, struct box3 *box)
+{
+    for (struct vec3 *end = &box->low; end; end = end == &box->low ? &box->high : NULL) {
+        fields_finite(fields, &end->x);
+        fields_finite(fields, &end->y);
+        fields_finite(fields, &end->z);
+    }
+}
+
 /* After images, regions, doses and beams, which it counts. */
 static void fields_origins(struct fields *fields, struct plan *plan)
 {
@@ -572,12 +581,8 @@ void fields_plan(struct fields *fields, struct plan *plan)
         fields_curve(fields, &plan->curves[c]);
     fields_preferences(fields, &plan->preferences);
     fields_report(fields, &plan->report);
-    fields_finite(fields, &plan->bounds_lps_mm.low.x);
-    fields_finite(fields, &plan->bounds_lps_mm.low.y);
-    fields_finite(fields, &plan->bounds_lps_mm.low.z);
-    fields_finite(fields, &plan->bounds_lps_mm.high.x);
-    fields_finite(fields, &plan->bounds_lps_mm.high.y);
-    fields_finite(fields, &plan->bounds_lps_mm.high.z);
+    fields_box(fields, &plan->bounds_lps_mm);
+    fields_box(fields, &plan->body_lps_mm);
     if (fields->is_reading)
         require(fields, fields->at == fields->size);
 }

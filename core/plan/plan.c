@@ -18,6 +18,7 @@ struct plan *plan_create(const char *id)
     for (size_t i = 0; i < PLAN_MAX_BEAMS; i++)
         plan->beam_origins[i] = nobody;
     plan->tracks_origin = nobody;
+    plan->body_lps_mm = (struct box3){ vec3(1, 1, 1), vec3(-1, -1, -1) };
     return plan;
 }
 

@@ -1,7 +1,11 @@
 /* Computes the bounds of a plan from its regions, images, doses and beams, without those of other patients. */
 #include "core/plan/plan_bounds.h"
 
+#include <math.h>
+
 #include "core/plan/fit.h"
+#include "core/region/body.h"
+#include "core/volume/otsu.h"
 
 static void add_box(struct box3 *bounds, const struct box3 *box)
 {
@@ -11,13 +15,19 @@ static void add_box(struct box3 *bounds, const struct box3 *box)
     box3_add(bounds, box->high);
 }
 
-static struct box3 box_of_regions(const struct plan *plan)
+/* The box of all regions, or with `body` of those that are part of it. */
+static struct box3 box_of_regions(const struct plan *plan, const struct body *body)
 {
     struct box3 bounds = box3_empty();
     for (size_t i = 0; i < plan->regions.n_regions; i++) {
         const struct region *region = &plan->regions.regions[i];
         const struct affine *map = &plan->regions.layers[region->layer]->grid.lps_mm_from_ijk;
-        if (fit_is_of_other(plan, fit_part_of_region(plan, i)))
+        if (fit_is_of_other(plan, fit_part_of_region(plan, i)) || (body && region->layer != body->layer))
+            continue;
+        int outer = (int)i;
+        while (body && body->region >= 0 && outer >= 0 && outer != body->region)
+            outer = plan->regions.regions[outer].parent;
+        if (outer < 0)
             continue;
         for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++)
             box3_add(&bounds,
@@ -57,9 +67,33 @@ static struct box3 box_of_beams(const struct plan *plan)
     return bounds;
 }
 
+static double diagonal_mm(const struct box3 *box)
+{
+    return box3_is_empty(box) ? 0 : vec3_length(vec3_sub(box->high, box->low));
+}
+
+/* The region of the body; where there is none, or no more than a lesion (less than half as long as the image), the
+ * bright voxels of the first image. */
+static struct box3 box_of_body(const struct plan *plan)
+{
+    int image = fit_first_image(plan);
+    struct body body;
+    struct box3 box = body_find(&plan->regions, &body) ? box_of_regions(plan, &body) : box3_empty();
+    if (image < 0)
+        return box;
+    struct box3 whole = grid_bounds_lps_mm(&plan->images[image].volume->grid);
+    if (diagonal_mm(&box) >= diagonal_mm(&whole) / 2)
+        return box;
+    double least = plan->images[image].is_inverted ? NAN : otsu_threshold(plan->images[image].volume);
+    return isfinite(least) ? otsu_box_lps_mm(plan->images[image].volume, least) : whole;
+}
+
 void plan_measure_bounds(struct plan *plan)
 {
-    struct box3 regions = box_of_regions(plan), others = box3_empty();
+    struct box3 body = box_of_body(plan);
+    if (!box3_is_empty(&body) && vec3_is_finite(body.low) && vec3_is_finite(body.high))
+        plan->body_lps_mm = body;
+    struct box3 regions = box_of_regions(plan, NULL), others = box3_empty();
     for (size_t i = 0; i < plan->n_images; i++) {
         if (fit_is_of_other(plan, (struct fit_part){ FIT_IMAGE, i }))
             continue;

@@ -39,10 +39,16 @@ static struct vec3 box_centre(const struct box3 *box)
     return vec3_scale(vec3_add(box->low, box->high), 0.5);
 }
 
-static struct box3 pane_box(const struct plan *plan)
+static struct box3 image_box(const struct plan *plan)
 {
     int image = fit_first_image(plan);
     return image >= 0 ? grid_bounds_lps_mm(&plan->images[image].volume->grid) : plan_box(plan);
+}
+
+/* The box that slices show at first: the body's. */
+static struct box3 pane_box(const struct plan *plan)
+{
+    return box3_is_empty(&plan->body_lps_mm) ? image_box(plan) : plan->body_lps_mm;
 }
 
 static double box_diagonal(const struct box3 *box)
@@ -60,7 +66,7 @@ static double box_extent(struct vec3 size, struct vec3 axis)
  * lesion without the head around it), the image's, which shows where in the body the regions are. */
 static struct box3 home_box(const struct plan *plan)
 {
-    struct box3 regions = plan_box(plan), image = pane_box(plan);
+    struct box3 regions = plan_box(plan), image = image_box(plan);
     return box_diagonal(&regions) < 0.5 * box_diagonal(&image) ? image : regions;
 }
 

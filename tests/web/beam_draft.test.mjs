@@ -69,7 +69,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await row('beam:beam-1').locator('.eye').click();
     await comes(({ looks }) => looks['beam-1']?.visible === true && looks['beam-1'].opening === true, 'its line and opening are on');
     await row('beam:beam-1').click();
-    await cell('Entry to target', 0).filter({ hasText: '78.0 mm' }).waitFor(); // 88 - 10
+    await cell('Source end to target', 0).filter({ hasText: '78.0 mm' }).waitFor(); // 88 - 10
     const { json } = await call(`${world.daemon.url}/api/v1/plans/phantom/beam?room=${room}`, 'GET');
     assert.equal(await cell('Angles φ, θ', 0).innerText(), '0.0°, 0.0°'); // from superior
     assert.equal(await cell('Skin gap', 0).innerText(), `${Math.abs(json.gap_mm).toFixed(1)} mm`);
@@ -120,7 +120,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
   });
 
   it('in 3-D the entry moves with the pointer in the plane parallel to the screen', async () => {
-    await panel('Move entry').click();
+    await panel('Move source end').click();
     await settled(1);
     const [{ clip, w }, { width, height }] = [await matrixOf(1), await page.locator('#picture-1').boundingBox()];
     await drag(1, [-30, 20]);
@@ -181,15 +181,15 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     };
     for (const [at, letter] of ['L', 'P', 'S'].entries()) {
       await fill(`Target, ${letter} in mm`, ['3', '4', '10'][at]);
-      await fill(`Entry, ${letter} in mm`, ['3', '4', '110'][at]);
+      await fill(`Source end, ${letter} in mm`, ['3', '4', '110'][at]);
     }
     await comes(({ draft }) => draft.line.target_mm.join() === '3,4,10' && draft.line.entry_mm.join() === '3,4,110', 'both points');
-    await cell('Entry to target', 0).filter({ hasText: '100.0 mm' }).waitFor();
+    await cell('Source end to target', 0).filter({ hasText: '100.0 mm' }).waitFor();
     await page.locator('.beam-moved', { hasText: /^target moved 5\.0 mm$/ }).waitFor(); // parallel to the planned one
     await fill('Aperture of the draft in mm', '60');
     await page.locator('.beam-regions').first().waitFor();
     await panel('cylinder of 60 mm', 'span').waitFor();
-    await fill('Entry, S in mm', '10');
+    await fill('Source end, S in mm', '10');
     await page.locator('.toasts', { hasText: 'the same point' }).waitFor();
     assert.deepEqual((await beam()).draft.line.entry_mm, [3, 4, 110]);
   });
@@ -230,7 +230,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await comes(({ draft }) => off(draft.line) > 0.01, 'another way');
     assert.ok((await ask()).depth_mm < deep, 'nearer to the skin');
     assert.deepEqual((await beam()).draft.line.target_mm, [3, 4, 10]);
-    for (const [at, letter] of ['L', 'P', 'S'].entries()) await fill(`Entry, ${letter} in mm`, ['3', '4', '110'][at]);
+    for (const [at, letter] of ['L', 'P', 'S'].entries()) await fill(`Source end, ${letter} in mm`, ['3', '4', '110'][at]);
     await comes(({ draft }) => draft.line.entry_mm.join() === '3,4,110', 'as before');
   });
 

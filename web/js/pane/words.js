@@ -23,7 +23,7 @@ export const say = sentences('pane', {
   maximise: 'Maximise {view}',
   picture: '{view} picture',
   locked: 'camera locked to beam',
-  fromEntry: '{distance} from entry',
+  fromEntry: '{distance} from source end',
   targetsOnly: '{camera}, only targets',
   noImage: 'No image: regions',
   notShown: 'The plan cannot be shown.',

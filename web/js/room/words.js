@@ -169,7 +169,7 @@ export const say = sentences('room', {
   beamLine: 'Beam line',
   unitPer: '{unit} per {what}',
   componentTotal: 'total',
-  componentFast: 'fast',
+  componentFast: 'fast-neutron dose',
   componentOther: 'other',
   componentBloodBoron: 'blood-boron',
   componentWeightedTotal: 'weighted-total',

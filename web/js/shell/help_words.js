@@ -77,7 +77,7 @@ export const say = sentences('shell.help', {
   zIs: 'Zoom by left drag',
   mIs: 'Measure in a slice: drag or click; Enter sets a point at the crosshair, Backspace takes it back',
   moveBeam: 'With Move beam: arrow keys',
-  moveBeamIs: 'Entry or target by 1 mm in the pane (Shift: 10 mm)',
+  moveBeamIs: 'Source end or target by 1 mm in the pane (Shift: 10 mm)',
   cIs: 'All clip planes off, and on again',
   kIs: 'Caps of the clip planes on or off',
   vIs: 'Plots of dose: histograms, depth profile',

@@ -70,7 +70,7 @@ class AlongBeam {
     return by ? () => this.slideBy(by * (shiftKey ? 10 : 1), at, mover) : null;
   }
 
-  /** "44.3 mm from entry, tumor" */
+  /** "44.3 mm from source end, tumor" */
   words(mm) {
     const region = this.pane.room.plan.value?.regions.find(({ id }) => id === regionAt(this.bands, mm));
     const distance = millimetres(mm);

@@ -27,7 +27,7 @@ export const say = sentences('beams.presets', {
   axialCrosshair: 'axial clip plane through the crosshair',
   beamSlice: 'Beam slice through the target',
   beamSliceIs: 'The image across the beam at the middle of the target, which is transparent',
-  beamSliceAt: 'beam slice {mm} mm from the entry',
+  beamSliceAt: 'beam slice {mm} mm from the source end',
   beamShown: 'beam shown',
   ninety: '90 % surface over the target',
   ninetyIs: 'The isodose surface of 90 % around the target: whether it fits',

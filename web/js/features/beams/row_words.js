@@ -16,7 +16,7 @@ export const say = sentences('beams.rows', {
   kept: 'kept',
   keptIs: '{draft}: a draft that was kept',
   curve: 'reference curve',
-  moveIs: 'Move entry or target of a beam in any pane; the plan keeps its own',
+  moveIs: 'Move source end or target of a beam in any pane; the plan keeps its own',
   move: 'Move beam',
   moved: 'target moved {mm} mm, direction {degrees}°',
   movedTarget: 'target moved {mm} mm',

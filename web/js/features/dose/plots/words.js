@@ -22,7 +22,7 @@ export const say = sentences('dose.plots', {
   total: 'total',
   boron: 'boron',
   nitrogen: 'nitrogen',
-  fast: 'fast',
+  fast: 'fast neutron dose',
   gamma: 'gamma',
   other: 'other',
   bloodBoron: 'blood boron',
