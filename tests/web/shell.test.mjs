@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { axe } from './axe.mjs';
-import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { load } from './unit/page.mjs';
 
 const { toPicture } = await load('parts/vec.js');
@@ -23,7 +23,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
   const wash = (page) => page.locator('.tools').getByRole('button', { name: 'Wash', exact: true });
   const isWashOn = (page) => wash(page).getAttribute('aria-pressed');
 
-  it('keys act on the pane that was active last from the tree, a tool and the page, but not from text and lists of choice', async () => {
+  once('keys act on the pane that was active last from the tree, a tool and the page, but not from text and lists of choice', async () => {
     const page = await open();
     const isMaximised = (view) => page.locator(`[data-view="${view}"] .icon-button[aria-pressed="true"]`).count();
     const tool = () => page.locator('.tools .tool[aria-pressed="true"] .word').textContent();
@@ -47,7 +47,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('a key is changed in the list, which can be searched; tooltips follow, a reload keeps it', async () => {
+  once('a key is changed in the list, which can be searched; tooltips follow, a reload keeps it', async () => {
     const page = await open();
     const key = (name) => page.locator(`[data-command="${name}"] .help-key`);
     await page.keyboard.press('?');
@@ -94,7 +94,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('splitters are dragged, moved by keys, put back and kept; panes get pictures of their new size', async () => {
+  once('splitters are dragged, moved by keys, put back and kept; panes get pictures of their new size', async () => {
     const page = await open();
     const width = (selector) => page.locator(selector).evaluate((element) => Math.round(element.getBoundingClientRect().width));
     const bar = (name) => page.getByRole('separator', { name });
@@ -146,7 +146,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('the page is drawn larger, and what is pointed at stays under the pointer; it is kept', async () => {
+  later('the page is drawn larger, and what is pointed at stays under the pointer; it is kept', async () => {
     const page = await open({ viewport: { width: 2880, height: 1620 } });
     const axial = page.locator('#picture-2');
     const before = await axial.boundingBox();
@@ -182,7 +182,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('light colours: the pictures stay dark, contrast is enough, and the system is followed', async () => {
+  once('light colours: the pictures stay dark, contrast is enough, and the system is followed', async () => {
     const page = await open({ colorScheme: 'light' });
     const ground = (selector) =>
       page
@@ -217,7 +217,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('a tool has the whole picture: a measure begins on a pin; menus stand in their boxes and in the window', async () => {
+  once('a tool has the whole picture: a measure begins on a pin; menus stand in their boxes and in the window', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`rooms/${room}`);
     await full(page);
@@ -245,6 +245,26 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.getByRole('button', { name: 'Snapshot' }).click();
     await page.locator('.snapshots').waitFor();
     await page.waitForFunction(() => document.querySelector('.snapshots').getBoundingClientRect().left >= 0);
+    await page.context().close();
+  });
+
+  once('a duplicated tab is a second member, and throws the first out only when asked to', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`rooms/${room}`);
+    await full(page);
+    const kept = await page.evaluate(() => Object.entries(sessionStorage));
+    const twin = await page.context().newPage();
+    await twin.addInitScript((entries) => {
+      if (!sessionStorage.length) for (const [key, value] of entries) sessionStorage.setItem(key, value);
+    }, kept); // as the browser copies it
+    await twin.goto(page.url());
+    await full(twin);
+    const members = () => twin.evaluate(() => document.querySelectorAll('.members .member').length);
+    assert.equal(await members(), 1);
+    assert.equal(await page.locator('.card.ended').count(), 0, 'the first is still in');
+    await twin.getByRole('button', { name: 'Go on here instead' }).click();
+    await page.locator('.card.ended').waitFor();
+    await full(twin);
     await page.context().close();
   });
 

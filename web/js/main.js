@@ -4,6 +4,7 @@ import { Connection } from './net/connection.js';
 import { placeOf, roomPath } from './net/address.js';
 import { isPersonal, keptFor } from './net/kept.js';
 import { makeApi } from './net/api.js';
+import { Seats } from './net/seats.js';
 import { Hooks } from './hooks.js';
 import { roomPage } from './shell/room_page.js';
 import { OwnName } from './room/own_name.js';
@@ -89,6 +90,10 @@ function enter(room, plan = '', link = '', isInstead = false, { from, ...seat } 
 const ownName = new OwnName(storage());
 let thumbnails = null; // of the start page, kept while rooms are visited
 
+const seats = new Seats(() => new BroadcastChannel('beamroom seats'));
+/** A reload has the place of a page that is gone. */
+const isReload = performance.getEntriesByType?.('navigation')[0]?.type === 'reload';
+
 const inMemory = new Map(); // what a browser that keeps nothing forgets at a reload
 
 /** Facts that this tab keeps of a room, for who is signed in (net/kept.js). */
@@ -142,6 +147,7 @@ function connect(room) {
   connection.addEventListener('message', ({ detail }) => {
     if (detail.type !== 'welcome') return;
     remember(room, { member: detail.member, secret: detail.secret, isNew: false, plan: detail.plan_id });
+    seats.take(room, detail.member);
     void told.then(() => remember(room, { user }));
     entered = { room, connection };
   });
@@ -165,11 +171,15 @@ async function route() {
   shown = `${place} ${id}`;
   leave();
   leave = () => {};
+  seats.take('', '');
   entered = null;
   const n = ++nRoutes;
   const host = document.querySelector('#page');
   if (place === 'rooms') {
     const before = remembered(id);
+    const first = before.member && n === 1 && !isReload && (await seats.isTaken(id, before.member)) ? before : null;
+    if (first) remember(id, { member: '', secret: '' }); // a member of its own
+    if (n !== nRoutes) return;
     const facts = isPersonal(before) || (before.link && !before.member) ? await told : null;
     if (n !== nRoutes) return;
     // a guest says a name first; a seat waits for its person
@@ -186,6 +196,12 @@ async function route() {
       session,
       storage: storage(),
       isBack: Boolean(remembered(id).member),
+      goOnHere:
+        first &&
+        (() => {
+          remember(id, first);
+          location.reload();
+        }),
       plan: remembered(id).plan ?? '',
     });
   } else if (place === 'signin') {

@@ -32,6 +32,7 @@ import { tree } from './tree.js';
 import { undoNames } from './undo_buttons.js';
 import { say } from './words.js';
 
+const twiceMs = 20000;
 const probeMs = 60;
 const tickMs = 250;
 const lateMs = 150; // without the room's plan, after which the panels are drawn without it
@@ -54,13 +55,14 @@ const frame = () => html`<div class="room">
 /**
  * @param {HTMLElement} host @param {string} id of the room
  * @param {object} world {api, connect, clock, redraw, decode, hooks, enter, ownName, session, storage: of the browser, isBack: this tab was in the room before,
+ *   goOnHere: takes the seat of the tab that this one was duplicated from; null: it was not,
  *   plan: the room's, as far as the address knows it}
  * @returns {() => void} leaves the room
  */
 export function roomPage(
   host,
   id,
-  { api, connect, clock, redraw, decode, hooks, enter, ownName, session, storage = null, isBack = false, plan = '' },
+  { api, connect, clock, redraw, decode, hooks, enter, ownName, session, storage = null, isBack = false, goOnHere = null, plan = '' },
 ) {
   const stops = [mount(host, frame)];
   const part = (name) => host.querySelector(name);
@@ -125,7 +127,8 @@ export function roomPage(
     ['.floating', floating],
   ];
   stops.push(whenKnown(room, clock, () => stops.push(...panels.map(([name, draw]) => mount(part(name), () => draw(world), redraw)))));
-  if (!isBack) stops.push(offerName(world));
+  if (goOnHere) ui.notify('ok', say.isTwice, 'tabs', { word: say.goOnHere, act: goOnHere }, twiceMs);
+  else if (!isBack) stops.push(offerName(world));
   stops.push(
     effect(() => describeTitle(room)),
     reveal(host, ui),

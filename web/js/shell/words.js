@@ -4,6 +4,8 @@ import { sentences } from '../parts/sentences.js';
 export const say = sentences('shell', {
   allPlans: 'All plans',
   brand: 'Beamroom, all plans',
+  isTwice: 'This room is open in another tab too: you are in it twice.',
+  goOnHere: 'Go on here instead',
   copied: 'Link copied. Who has it can join this room.',
   pressCopy: 'Press Ctrl+C to copy the selected link.',
   openReport: 'Open the load report',
