@@ -163,6 +163,24 @@ test('rooms, and what their members write down', async () => {
   await ask(`${at}/links`, 'POST', { role: 'reviewer' });
 });
 
+test('a meeting of many cases', async () => {
+  const { id } = await ask('/api/v1/meetings', 'POST', { name: 'Board', cases: [{ plan: 'phantom' }, { plan: 'phantom' }] });
+  await ask('/api/v1/meetings');
+  await ask(`/api/v1/meetings/${id}/case`, 'POST', { case: 'next', from: null });
+  const { url, token } = await ask(`/api/v1/meetings/${id}/links`, 'POST', { role: 'observer' });
+  assert.ok(url.endsWith(token));
+  await ask(`/api/v1/meetings/${id}/links`);
+  const { room: now } = await ask(`/api/v1/meetings/${id}/enter`, 'POST', { link: token });
+  const bea = await Client.enter(daemon.url, now, { name: 'Bea' });
+  const { people } = await ask(`/api/v1/meetings/${id}/minutes`);
+  assert.deepEqual(
+    people.map(({ name }) => name),
+    ['Bea'],
+  );
+  bea.cut();
+  await ask(`/api/v1/meetings/${id}/end`, 'POST', {});
+});
+
 test('the state of a sign-in, on a server on which nobody signs in', async () => {
   const session = await ask('/api/v1/session');
   assert.deepEqual([session.sign_in, session.identity, session.open_to_everybody], [[], null, false]);
