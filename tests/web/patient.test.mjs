@@ -72,6 +72,18 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
   it('a wall of the room names the patient when that is asked for it, and is masked again by the same button', async () => {
     const room = page.url().split('/').pop();
     const { token: link } = (await call(`${world.daemon.url}/api/v1/rooms/${room}/links`, 'POST', { role: 'wall', expires_s: 600 })).json;
+    const display = await world.newPage(`display/${room}#link=${link}`, { viewport: { width: 1280, height: 720 } });
+    await shows(display.locator('.wall-patient'), 'Q. Z. …419');
+    if ((await page.locator('.patient-card').count()) === 0) await page.locator('.patient-button').click();
+    await page.getByRole('button', { name: 'On the wall …' }).click();
+    await page.getByRole('button', { name: 'Show the name there' }).click();
+    await shows(display.locator('.wall-patient'), 'ZWEIFEL, Quirin');
+    assert.equal(await display.getByRole('button', { name: 'Compare identities' }).count(), 0);
+    await shoot(display, 'patient-on-wall');
+    await page.getByRole('button', { name: 'Mask it there' }).click();
+    await shows(display.locator('.wall-patient'), 'Q. Z. …419');
+    await display.context().close();
+    await page.getByRole('button', { name: 'On the wall …' }).click(); // closed again
     const wall = await Client.enter(world.daemon.url, room, { link });
     const read = () => call(`${world.daemon.url}/api/v1/rooms/${room}/identity`, 'GET', undefined, wall.headers);
     if ((await page.locator('.patient-card').count()) === 0) await page.locator('.patient-button').click();

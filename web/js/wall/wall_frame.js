@@ -4,6 +4,7 @@ import { chosenBeam, isDrafted } from '../features/beams/beams.js';
 import { draftBelongs, draftWords } from '../features/beams/beam_words.js';
 import { otherPatientsBar } from '../features/fits/fit_table.js';
 import { fitBar } from '../features/fits/later.js';
+import { nameWords } from '../features/patient/patient_card.js';
 import { approvalOf, dateWords, identityOf, shownPatient, shownTreatmentPlan } from '../room/identity.js';
 import { worst } from '../room/fidelity.js';
 import { missingOf } from './missing.js';
@@ -24,7 +25,7 @@ function patient({ room, named }) {
   const masked = shownPatient(plan, scene);
   const full = masked && named.value ? identityOf(plan, scene, named.value) : null;
   if (full)
-    return html`<b class="wall-patient named">${full.name}</b><span class="wall-id">${[full.id, dateWords(full.birth_date)].filter(Boolean).join(' · ')}</span>`;
+    return html`<b class="wall-patient named">${nameWords(full.name)}</b><span class="wall-id">${[full.id, dateWords(full.birth_date)].filter(Boolean).join(' · ')}</span>`;
   return masked
     ? html`<b class="wall-patient">${masked.masked}</b>`
     : html`<span class="wall-unknown">${icon('note', 20)} ${say.unknown}</span>`;
