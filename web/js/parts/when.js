@@ -1,5 +1,8 @@
 // Times in lists as people say them: "14:20", "yesterday 16:40", "9 Nov 16:40", "9 Nov 2025".
+import { language } from '../languages/index.js';
 import { say } from './later_words.js';
+
+const locale = language === 'en' ? 'en-GB' : language; // days before months
 
 const dayMs = 86400000;
 const midnight = (ms) => new Date(ms).setHours(0, 0, 0, 0);
@@ -8,7 +11,7 @@ const clockTime = (ms) => new Date(ms).toLocaleTimeString('sv', { hour: '2-digit
 /** "27 Nov", with the year when it is not this one. */
 export function day(ms, now = Date.now()) {
   const isThisYear = new Date(ms).getFullYear() === new Date(now).getFullYear();
-  return new Date(ms).toLocaleDateString('en-GB', { day: 'numeric', month: 'short', ...(isThisYear ? {} : { year: 'numeric' }) });
+  return new Date(ms).toLocaleDateString(locale, { day: 'numeric', month: 'short', ...(isThisYear ? {} : { year: 'numeric' }) });
 }
 
 /** When something was, as near as a list needs. */
@@ -23,7 +26,7 @@ export function when(ms, now = Date.now()) {
 /** The day of a DICOM date, "20261109": "9 Nov 2026"; '' where it is none. */
 export const dicomDay = (date) =>
   /^\d{8}$/.test(date)
-    ? new Date(Number(date.slice(0, 4)), Number(date.slice(4, 6)) - 1, Number(date.slice(6))).toLocaleDateString('en-GB', {
+    ? new Date(Number(date.slice(0, 4)), Number(date.slice(4, 6)) - 1, Number(date.slice(6))).toLocaleDateString(locale, {
         day: 'numeric',
         month: 'short',
         year: 'numeric',
@@ -31,4 +34,4 @@ export const dicomDay = (date) =>
     : '';
 
 /** The name of a room: the given one, else that of its plan and its first day. @param {{name: string, created_at: string}} room @param {string} plan label or name of its plan */
-export const roomName = (room, plan) => room.name || `${plan}, ${day(Date.parse(room.created_at))}`;
+export const roomName = (room, plan) => room.name || say.roomOfDay({ plan, day: day(Date.parse(room.created_at)) });
