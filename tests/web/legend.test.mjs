@@ -284,6 +284,36 @@ describe('the dose legend', { skip: missing && `${missing} is not there` }, () =
     await page.context().close();
   });
 
+  once('outlines are as wide in px of the page whatever the pixels of the screen', async () => {
+    const widths = [];
+    for (const deviceScaleFactor of [1, 2]) {
+      await open(
+        'phantom',
+        washed({ dose: { lines: { visible: true, width_px: 4 }, wash: { visible: false }, quantity: 'gamma' }, outline: { width_px: 4 } }),
+        {
+          viewport: { width: 1280, height: 720 },
+          deviceScaleFactor,
+        },
+      );
+      await full(page, 2);
+      assert.equal(await page.evaluate(() => globalThis.beamroom.stats().documents[2].pixel_ratio ?? 1), deviceScaleFactor);
+      // from the left edge to the right through the picture's upper part: the longest run of one bright colour is the scalp's outline cut across
+      const share = await page.evaluate(() => {
+        const canvas = document.querySelector('[data-view="2"] canvas');
+        const { data, width } = canvas.getContext('2d').getImageData(0, Math.round(canvas.height / 2), canvas.width, 1);
+        let first = 0;
+        while (first < width && data[4 * first] + data[4 * first + 1] + data[4 * first + 2] < 150) first += 1;
+        const colour = [0, 1, 2].map((part) => data[4 * (first + 3) + part]);
+        let last = first + 3; // its edge is soft
+        while (last < width && [0, 1, 2].every((part) => Math.abs(data[4 * last + part] - colour[part]) < 60)) last += 1;
+        return (last - first) / width;
+      });
+      widths.push(share * (await page.locator('#picture-2').boundingBox()).width);
+      await page.context().close();
+    }
+    assert.ok(Math.abs(widths[0] - widths[1]) < 1.2 && widths[0] > 3, `${widths} px`); // edges are soft
+  });
+
   once('on a telephone it has swatches alone, and a tap shows the list', async () => {
     await open('phantom', washed(), sizes.phone);
     assert.equal(

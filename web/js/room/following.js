@@ -6,6 +6,7 @@ import { mergePatch } from '../wire/merge.js';
 import { beamShown } from './beam_line.js';
 import { leftBehind } from './marks.js';
 import { say } from './words.js';
+import { pixelRatio } from '../parts/page_look.js';
 
 const usualSize = [1024, 768]; // of a pane that was never shown
 
@@ -119,6 +120,8 @@ export class Following {
   /** The document with which a view opens. */
   documentToOpen(view) {
     const document = { ...view.document.value, size_px: view.ownSize };
+    const ratio = Math.max(1, pixelRatio()); // lines as wide on any screen
+    if ((document.pixel_ratio ?? 1) !== ratio) document.pixel_ratio = ratio;
     if (this.isFollowing.value) delete document.override;
     else if (this.override.value) document.override = this.override.value;
     return document;
