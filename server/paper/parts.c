@@ -123,7 +123,8 @@ static void add_figures(struct paper *paper)
     block_page(paper);
     cJSON_ArrayForEach(figure, get(paper->kept, "figures"))
     {
-        const int place = (int)json_number(figure, "place", 0);
+        const double of = json_number(figure, "place", 0);
+        const int place = of >= 0 && of < 100 ? (int)of : 0;
         const bool is_half = place == 1 || place == 2;
         if (!is_half || !block || strcmp(text_of(block, "width"), "half") != 0)
             block = figure_block(paper, is_half ? "half" : "whole");

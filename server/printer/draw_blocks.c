@@ -21,6 +21,13 @@ static const char *text_of(const cJSON *object, const char *name)
     return text ? text : "";
 }
 
+/* A small whole number; -1 for anything else. */
+static int int_of(const cJSON *object, const char *name)
+{
+    const double value = json_number(object, name, -1);
+    return value >= 0 && value < 1e6 ? (int)value : -1;
+}
+
 static bool is(const cJSON *object, const char *name, const char *word)
 {
     return strcmp(text_of(object, name), word) == 0;
@@ -309,7 +316,7 @@ static void draw_curve(const struct sheet *sheet, const struct chart *chart, con
     trace(sheet, chart, curve, 0, false);
     cairo_set_source_rgb(sheet->cairo, r, g, b);
     cairo_set_line_width(sheet->cairo, 1);
-    set_dash(sheet, (int)json_number(curve, "dash", 0));
+    set_dash(sheet, int_of(curve, "dash"));
     cairo_stroke(sheet->cairo);
     cairo_set_dash(sheet->cairo, NULL, 0, 0);
 }
@@ -351,7 +358,7 @@ static void draw_key(struct sheet *sheet, const cJSON *curves)
             sheet_need(sheet, 12);
         }
         cairo_set_source_rgb(sheet->cairo, (rgb >> 16 & 0xff) / 255.0, (rgb >> 8 & 0xff) / 255.0, (rgb & 0xff) / 255.0);
-        set_dash(sheet, (int)json_number(curve, "dash", 0));
+        set_dash(sheet, int_of(curve, "dash"));
         cairo_set_line_width(sheet->cairo, 1.2);
         cairo_move_to(sheet->cairo, x, sheet->y + 5);
         cairo_line_to(sheet->cairo, x + 22, sheet->y + 5);
@@ -393,8 +400,7 @@ static void draw_chart(struct sheet *sheet, const cJSON *block)
 static void draw_picture(const struct sheet *sheet, const cJSON *figure, double x, double y, double width,
                          double height)
 {
-    const int place = (int)json_number(figure, "place", -1), w = (int)json_number(figure, "width_px", 0),
-              h = (int)json_number(figure, "height_px", 0);
+    const int place = int_of(figure, "place"), w = int_of(figure, "width_px"), h = int_of(figure, "height_px");
     cairo_rectangle(sheet->cairo, x, y, width, height);
     cairo_set_source_rgb(sheet->cairo, 0.93, 0.94, 0.95);
     cairo_fill(sheet->cairo);
