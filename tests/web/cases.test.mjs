@@ -186,6 +186,27 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     await page.close();
   });
 
+  it('a wall goes along: the next patient on plain ground, then that case alone, also after a reload', async () => {
+    const link = await api(`/meetings/${meeting}/links`, 'pat', 'POST', { role: 'wall', expires_s: 3600, guests: false });
+    assert.equal(link.status, 201, link.text);
+    const wall = await world.newPage(link.json.url.slice(1), { viewport: { width: 1920, height: 1080 } });
+    await wall.locator('.wall-foot', { hasText: 'Tumour board · case 3 of 3' }).waitFor();
+    await wall.locator('.wall-plan', { hasText: 'Third plan' }).waitFor();
+    const { room } = (await agenda()).cases[2];
+    const walls = (await api(`/rooms/${room}/members`, 'pat')).json.members.filter(({ role }) => role === 'wall');
+    assert.equal(walls.length, 1);
+    const card = wall.locator('.wall-card');
+    const words = card.waitFor().then(() => card.textContent());
+    const [first, , third] = cases;
+    assert.equal((await api(`/meetings/${meeting}/case`, 'pat', 'POST', { case: first, from: third })).status, 200);
+    assert.match((await words).replace(/\s+/g, ' '), /Case 1 of 3.*First plan/);
+    await card.waitFor({ state: 'detached' });
+    await wall.locator('.wall-plan', { hasText: 'First plan' }).waitFor();
+    await wall.reload(); // it begins at its address, and is told where the meeting is
+    await wall.locator('.wall-foot', { hasText: 'case 1 of 3' }).waitFor();
+    await wall.context().close();
+  });
+
   later('the keys do nothing for who may not, and the end stays', async () => {
     await pages.fay.keyboard.press('Shift+N');
     await pages.fay.locator('.toast', { hasText: 'Who presents has the meeting go on' }).waitFor();

@@ -17,7 +17,7 @@ const clock = {
   setTimeout: (callback, ms) => setTimeout(callback, ms),
   clearTimeout: (timer) => clearTimeout(timer),
 };
-const room = location.pathname.split('/').pop();
+const home = location.pathname.split('/').pop(); // the room of the address, at which a wall that is started anew begins
 const host = document.querySelector('#wall');
 
 /** The storage of this tab; null where the browser keeps nothing. */
@@ -29,10 +29,11 @@ function storageOfTab() {
   }
 }
 const storage = storageOfTab();
+const [moveKey, meetingKey] = [`wall-at:${home}`, `wall-meeting:${home}`];
 
 /** The token of the link leaves the address, and is kept for a reload of this tab; a browser that keeps nothing leaves it there. */
 function takeLink() {
-  const key = `wall:${room}`;
+  const key = `wall:${home}`;
   const link = (new URLSearchParams(location.hash.slice(1)).get('link') ?? '').slice(0, 64);
   if (link && storage) {
     storage.setItem(key, link);
@@ -41,7 +42,27 @@ function takeLink() {
   return link || (storage?.getItem(key) ?? '');
 }
 
+/** The message meeting.case by which this page was left for another case; null: it begins at its address. */
+function takeMove() {
+  try {
+    const move = JSON.parse(storage?.getItem(moveKey) ?? 'null');
+    storage?.removeItem(moveKey);
+    return move && isId(move.room) ? move : null;
+  } catch {
+    return null;
+  }
+}
+
+/** Loads the page anew for the next case, with the seat that waits there: nothing of the case before is left. */
+function goTo(message) {
+  storage?.setItem(moveKey, JSON.stringify(message));
+  location.reload();
+}
+
 function start() {
+  const move = takeMove();
+  const room = move?.room ?? home;
+  const link = takeLink();
   let seat = null; // of the wall: it has no other right than that
   const api = makeApi((path, init = {}) => fetch(path, { ...init, headers: { ...(seat && ofMember(seat)), ...init.headers } }));
   const url = new URL(`/api/v1/rooms/${room}/ws`, location.href);
@@ -55,10 +76,18 @@ function start() {
   const connection = new Connection(
     url.href,
     { makeSocket: (address) => new WebSocket(address), clock, isGone },
-    { link: takeLink(), wall: true },
+    { link, wall: true, ...(move && { member: move.member, secret: move.secret }) },
   );
   connection.addEventListener('message', ({ detail }) => {
     if (detail.type === 'welcome') seat = detail;
+    else if (detail.type === 'meeting') storage?.setItem(meetingKey, detail.meeting);
+  });
+  // a seat that is lost, as after a restart of the server: the wall begins at its address again; one of a meeting, at the case that is now
+  connection.addEventListener('ended', ({ detail }) => {
+    const meeting = storage?.getItem(meetingKey);
+    if (detail.code === 'removed') return;
+    if (room !== home) location.reload();
+    else if (meeting && link) location.replace(`/meetings/${meeting}#link=${link}`);
   });
   connection.open();
   const redraw = new Redraw((callback) => requestAnimationFrame(callback), clock);
@@ -67,8 +96,8 @@ function start() {
     decodeHere: (picture, type) => createImageBitmap(new Blob([picture], { type })),
   });
   const only = new URLSearchParams(location.search).get('view') ?? '';
-  globalThis.wall = wallPage(host, room, { api, connection, clock, redraw, decode, storage }, only);
+  globalThis.wall = wallPage(host, room, { api, connection, clock, redraw, decode, storage, card: move, goTo }, only);
 }
 
-if (isId(room)) start();
+if (isId(home)) start();
 else host.textContent = say.noRoom;

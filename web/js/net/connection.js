@@ -25,7 +25,7 @@ class ConnectionEvent extends Event {
 }
 
 /**
- * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason, isRefused: the server said so}; "quiet"
+ * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason, code: of bye, isRefused: the server said so}; "quiet"
  * {since: time of the last sign of the server, dueSince} when an answer is overdue, and "heard" when one came after all;
  * "renewing" when a new socket takes the place of one that works; "paused" when the person has to sign in before it goes on.
  */
@@ -216,7 +216,7 @@ export class Connection extends EventTarget {
       else this.#serverWaitMs = message.retry_ms;
     }
     this.#tell('message', message);
-    if (this.#isEnded) this.#tell('ended', { reason: message.reason, isRefused: true });
+    if (this.#isEnded) this.#tell('ended', { reason: message.reason, code: message.code, isRefused: true });
   }
 
   #ping() {

@@ -106,11 +106,12 @@ export function wallBars(world) {
 
 const layoutWords = { four: say.fourPanes, 'worked-in': say.onePane, presenter: say.asPresenter };
 
-export function wallFoot({ room, meeting }) {
+export function wallFoot({ room, meetingTold }) {
+  const meeting = meetingTold.value;
   const told = room.wall.value;
   const layout = layoutWords[told?.layout] ?? '';
   const view = room.view(viewOf(told?.active));
   const presenter = room.following.presenter.value;
   const works = view && presenter ? say.worksIn({ layout, name: presenter.name, view: view.name }) : layout;
-  return html`<span>${meeting.value || say.room({ room: room.id })}</span><span>${works}</span><span class="grow"></span><span>${say.radiological}</span><b>${say.research}</b>`;
+  return html`<span>${meeting?.n ? say.meeting(meeting) : say.room({ room: room.id })}</span><span>${works}</span><span class="grow"></span><span>${say.radiological}</span><b>${say.research}</b>`;
 }

@@ -7,12 +7,13 @@ import { pointers } from '../features/pointers/feature.js';
 import { WorkedIn } from '../features/watch/watching.js';
 import { ofMember } from '../net/api.js';
 import { soon } from '../net/soon.js';
-import { shownPatient } from '../room/identity.js';
+import { approvalOf, shownPatient } from '../room/identity.js';
 import { views } from '../room/layout.js';
 import { crosshair } from '../room/plan.js';
 import { RoomState } from '../room/room.js';
 import { UiState } from '../room/ui.js';
 import { Answer } from '../parts/answer.js';
+import { icon } from '../parts/icons.js';
 import { mount } from '../parts/mount.js';
 import { wallColumn } from './wall_column.js';
 import { wallBars, wallFoot, wallHeader } from './wall_frame.js';
@@ -27,6 +28,7 @@ const standardPx = 1080;
 const leastScale = 0.7;
 const mostRatio = 4; // scene.json
 const sleepKey = 'asleep-since';
+const cardMs = 1500;
 
 const frame = () => html`<div class="wall"><header class="wall-top"></header><div class="wall-bars"></div>
   <main class="wall-panes">${views.map((_, index) => html`<section class="pane wall-pane" data-view=${index + 1} hidden></section>`)}</main>
@@ -34,10 +36,11 @@ const frame = () => html`<div class="wall"><header class="wall-top"></header><di
 
 /**
  * @param {HTMLElement} host @param {string} id of the room
- * @param {object} world {api, connection, clock, redraw, decode, storage: of this tab} @param {string} only a kind of view that is shown alone; '': as the room has it
+ * @param {object} world {api, connection, clock, redraw, decode, storage: of this tab, card: message meeting.case by which it comes, goTo(message): goes to another case}
+ * @param {string} only a kind of view that is shown alone; '': as the room has it
  * @returns {object} {room, panes} for tests
  */
-export function wallPage(host, id, { api, connection, clock, redraw, decode, storage }, only = '') {
+export function wallPage(host, id, { api, connection, clock, redraw, decode, storage, card = null, goTo = () => {} }, only = '') {
   mount(host, frame);
   const part = (name) => host.querySelector(name);
   const ui = new UiState(clock);
@@ -59,7 +62,9 @@ export function wallPage(host, id, { api, connection, clock, redraw, decode, sto
     scale,
     probed: probing.state,
     named: signal(null), // the patients in full, while somebody has them named on this wall
-    meeting: signal(''),
+    meetingTold: signal(null), // the message meeting
+    card: signal(card), // the message meeting.case with which the wall came here, while its card is shown
+    closedCase: signal(0), // number of a case that is not open to this wall; 0: none
     asleepSince: signal(0), // ms since 1970; 0: the room is awake
     isOpenToEverybody: signal(false),
     onPainted: (header, isDrawn) => room.frameShown(header, isDrawn),
@@ -85,6 +90,7 @@ export function wallPage(host, id, { api, connection, clock, redraw, decode, sto
   takePlanes(room);
   watchSleep(world, storage);
   watchNamed(world);
+  followMeeting(world, goTo);
   const draw = (name, template) => mount(part(name), () => template(world));
   shutWhenOut(room, panes, host);
   draw('.wall-top', wallHeader);
@@ -219,8 +225,31 @@ function shutWhenOut(room, panes, host) {
   });
 }
 
+/** Goes along from case to case: a card with the next patient stands before its first picture. */
+function followMeeting({ connection, clock, meetingTold, card, closedCase }, goTo) {
+  if (card.peek())
+    clock.setTimeout(() => {
+      card.value = null;
+    }, cardMs);
+  connection.addEventListener('message', ({ detail }) => {
+    if (detail.type === 'meeting') meetingTold.value = detail;
+    if (detail.type === 'meeting' && !detail.waits) closedCase.value = 0;
+    if (detail.type !== 'meeting.case') return;
+    if (!detail.open) closedCase.value = detail.n;
+    else if (detail.room) goTo(detail);
+  });
+}
+
+function caseCard(to) {
+  const [word, kind, picture] = approvalOf(to);
+  return html`<section class="wall-card" role="status"><p>${say.caseOf(to)}</p><h2>${to.patient || say.unknown}</h2><p class="wall-card-plan">${to.plan}</p>
+    <p class=${`wall-approval ${kind}`}>${picture ? icon(picture, 20) : nothing}${word}</p></section>`;
+}
+
 /** Words in place of the panes: who sleeps, or may not look any more. */
-function notice({ room, asleepSince }) {
+function notice({ room, asleepSince, card, closedCase }) {
+  if (card.value) return caseCard(card.value);
+  if (closedCase.value) return html`<div class="wall-said"><h2>${say.notOpen({ n: closedCase.value })}</h2></div>`;
   const { state, reason } = room.link.value;
   if (asleepSince.value) {
     const time = new Date(asleepSince.value).toLocaleTimeString('en-GB', { hour: '2-digit', minute: '2-digit' });
