@@ -108,6 +108,23 @@ describe('undo and redo', { skip: missing && `${missing} is not there` }, () => 
     await until(axial, (mm) => mm === from, 60000);
   });
 
+  it('keeps its steps over a reload', async () => {
+    const before = (await world.scene(room)).regions.scalp?.visible ?? true;
+    await page.locator('[data-key="region:scalp"] .eye').click();
+    await until(
+      async () => (await world.scene(room)).regions.scalp.visible,
+      (is) => is !== before,
+    );
+    await page.reload();
+    await full(page);
+    await page.waitForFunction(() => document.querySelector('[data-act="undo"]')?.disabled === false);
+    await page.keyboard.press('Control+z');
+    await until(
+      async () => (await world.scene(room)).regions.scalp.visible,
+      (is) => is === before,
+    );
+  });
+
   it('names a change in the tool strip, and leaves what another program has changed since', async () => {
     const isVisible = async () => (await world.scene(room)).regions.scalp.visible;
     const becomes = async (wanted) => assert.equal(await until(isVisible, (now) => now === wanted, 60000), wanted);

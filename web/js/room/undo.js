@@ -73,6 +73,28 @@ export class Undo {
     this.#tell();
   }
 
+  /** What a reload keeps: the steps of the room and of one's marks. Own views begin anew, and acts are functions. */
+  get kept() {
+    const of = (steps) =>
+      steps.filter(({ act, place }) => !act && place !== 'own').map(({ changes, place }) => ({ place, changes: [...changes.values()] }));
+    return { done: of(this.#done), undone: of(this.#undone) };
+  }
+
+  /** Gives back what was kept, below what was changed since. */
+  restore({ done, undone }) {
+    const of = (steps) =>
+      steps.map(({ place, changes }) => ({
+        changes: new Map(changes.map((change) => [keyOf(change), change])),
+        gesture: 0,
+        at: -Infinity,
+        place,
+      }));
+    const isNew = !this.#done.length;
+    this.#done = [...of(done), ...this.#done].slice(-maxSteps);
+    if (isNew) this.#undone = of(undone);
+    this.#tell();
+  }
+
   undo() {
     this.#move(this.#done, this.#undone, 'before', 'after', [say.partlyUndone, say.notUndone]);
   }

@@ -39,6 +39,7 @@ const lateMs = 150; // without the room's plan, after which the panels are drawn
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
 const filesBar = later(() => import('./files_bar.js'), 'js/features/fits/fit.css');
+const undoKept = later(() => import('../room/undo_kept.js'));
 const popovers = later(() => import('./popovers.js'));
 const splitters = later(() => import('./splitters.js'), 'js/shell/splitters.css');
 const drawer = (world) => (world.ui.arrangement.value.drawer ? features.map(({ drawer: own }) => own?.draw(world)) : nothing);
@@ -127,6 +128,7 @@ export function roomPage(
     ['.floating', floating],
   ];
   stops.push(whenKnown(room, clock, () => stops.push(...panels.map(([name, draw]) => mount(part(name), () => draw(world), redraw)))));
+  if (hasKept(`undo ${id}`)) undoKept.load();
   if (goOnHere) ui.notify('ok', say.isTwice, 'tabs', { word: say.goOnHere, act: goOnHere }, twiceMs);
   else if (!isBack) stops.push(offerName(world));
   stops.push(
@@ -138,6 +140,7 @@ export function roomPage(
   stops.push(
     listenKeys(globalThis, world, () => Boolean(document.querySelector('[aria-modal="true"], dialog[open]'))),
     listenPresses(ui),
+    effect(() => undoKept.loaded.value?.keepUndo(room, undo, sessionStorage, globalThis)),
     listenUndo(globalThis, undo),
     moveFocus(host, ui),
     watchEnd(host, room, after, plan),
@@ -161,6 +164,15 @@ export function roomPage(
     for (const stop of stops.reverse()) stop();
     document.title = 'Beamroom';
   };
+}
+
+/** Whether this tab keeps something under that name. */
+function hasKept(name) {
+  try {
+    return sessionStorage.getItem(name) !== null;
+  } catch {
+    return false;
+  }
 }
 
 /** Calls back when the room has told its plan, or is late with it: what is around the panes is then drawn once, and not before the views are open. */
@@ -235,6 +247,7 @@ function loadBeforeClicks() {
     undoNames.load();
     splitters.load();
     popovers.load();
+    undoKept.load();
   };
   for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
   return () => abort.abort();

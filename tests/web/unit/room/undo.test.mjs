@@ -5,6 +5,7 @@ import { members, roomWorld } from '../fake_room.mjs';
 import { load } from '../page.mjs';
 
 const { Undo, maxSteps, joinMs } = await load('room/undo.js');
+const { keepUndo } = await load('room/undo_kept.js');
 const { stepName, stepTitle } = await load('shell/undo_words.js');
 const { mergePatch } = await load('wire/merge.js');
 
@@ -16,6 +17,8 @@ function world() {
     { name: 'Axial', nameWithin: 'axial', document: { value: { kind: 'axial' } } },
   ];
   const room = {
+    id: 'abcd-efgh',
+    member: { value: 'm1', peek: () => 'm1' },
     canChange: { value: true },
     following: { isPresenting: { value: true } },
     plan: {
@@ -277,6 +280,46 @@ test("what was changed on one's own is no step any more after the presenter has 
   told.length = 0;
   undo.undo();
   assert.deepEqual([undo.next.value, room.following.isFollowing.value, told], [null, true, []]);
+});
+
+test('a reload keeps the steps of the same member, but not those of another, nor own views', () => {
+  const items = new Map();
+  const storage = {
+    getItem: (key) => items.get(key) ?? null,
+    setItem: (key, value) => items.set(key, value),
+    removeItem: (key) => items.delete(key),
+  };
+  const first = world();
+  const target = new EventTarget();
+  keepUndo(first.room, first.undo, storage, target);
+  first.opacity(0.5);
+  first.wait();
+  first.opacity(0.25);
+  first.undo.undo();
+  target.dispatchEvent(new Event('pagehide'));
+  const name = `undo ${first.room.id}`;
+  assert.ok(items.has(name));
+  const again = world();
+  again.room.scene.value = first.room.scene.value; // what the server kept
+  keepUndo(again.room, again.undo, storage, new EventTarget());
+  assert.notEqual(again.undo.nextAgain.value, null);
+  again.undo.redo();
+  assert.equal(opacityOf(again.room), 0.25);
+  again.undo.undo();
+  again.undo.undo();
+  assert.equal(opacityOf(again.room), 1);
+  for (const wrong of [
+    '',
+    '{',
+    'null',
+    JSON.stringify({ ...JSON.parse(items.get(name)), member: 'm9' }),
+    JSON.stringify({ member: 'm1', done: [{ place: 'room', changes: [{}] }], undone: [] }),
+  ]) {
+    const other = world();
+    items.set(name, wrong);
+    keepUndo(other.room, other.undo, storage, new EventTarget());
+    assert.equal(other.undo.next.value, null, wrong.slice(0, 60));
+  }
 });
 
 test('steps are named, with the value and its unit', () => {

@@ -1,6 +1,6 @@
 // The name of an image, and showing it: for its row in the tree and for Selection.
 import { imageName, shownImage } from '../../room/plan.js';
-import { showPatchWithVolume } from './transfer.js';
+import { showPatchWithVolume } from './volume_patches.js';
 
 export { imageName };
 

@@ -1,7 +1,7 @@
 // The row of the tree for the image as a volume in the 3-D picture.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { shownImage } from '../../room/plan.js';
-import { visiblePatch } from './transfer.js';
+import { visiblePatch } from './volume_patches.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
 import { say } from './words.js';
 
