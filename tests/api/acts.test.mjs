@@ -282,7 +282,7 @@ describe('the other acts over HTTP', () => {
       () => ask(room, '/record'),
       ({ status }) => status === 200,
     );
-    const check = { entry: 'identity', text: 'Plan', state: 'ok' },
+    const check = { entry: 'registration', text: 'Plan', state: 'ok' },
       decision = { decision: 'accept', text: 'as shown' },
       signature = { name: 'A. Example', meaning: 'reviewed' };
     for (const [kind, body] of Object.entries({ checks: check, decisions: decision, signatures: signature, acceptances: { thing: 'x' } }))

@@ -27,7 +27,7 @@ const put = (client, kind, body, of = {}) => give(client, { type: 'item.put', ki
 const view = { name: 'Here', scene: {}, views: [], layout: { mode: '1', panes: ['3d'] } };
 const items = [
   ['note', { text: 'Edge?' }],
-  ['check', { entry: 'identity', text: 'Plan', state: 'ok' }],
+  ['check', { entry: 'registration', text: 'Plan', state: 'ok' }],
   ['decision', { decision: 'accept', text: 'As shown' }],
   ['signature', { name: 'A. Example', meaning: 'reviewed' }],
 ];

@@ -72,7 +72,7 @@ after(async () => {
 
 test('the revision is a digest of names and contents, whatever the times of the files', async () => {
   const folder = join(plans, 'phantom');
-  assert.equal((await put(ann, 'check', { entry: 'identity', text: 'x', state: 'ok' })).type, '/problems/busy');
+  assert.equal((await put(ann, 'check', { entry: 'registration', text: 'x', state: 'ok' })).type, '/problems/busy');
   const found = await revision();
   assert.equal(found.revision, revisionOf(folder));
   assert.equal(found.n_files, filesOf(folder).length);
@@ -82,7 +82,7 @@ test('the revision is a digest of names and contents, whatever the times of the 
 });
 
 test('entries are marked by reviewers, each once, in their newest version', async () => {
-  const entry = { entry: 'identity', text: 'Plan and side', state: 'ok', comment: '' };
+  const entry = { entry: 'registration', text: 'Plan and side', state: 'ok', comment: '' };
   const first = await put(ben, 'check', entry);
   assert.deepEqual([first.body.state, first.body.role, first.body.plan_revision], ['ok', 'reviewer', revisionOf(join(plans, 'phantom'))]);
   assert.equal((await put(ann, 'check', entry)).type, '/problems/conflict');
@@ -139,7 +139,7 @@ test('the record holds it all as its schema says, and its export is in the audit
   assert.deepEqual(
     found.checklist.map(({ entry, state }) => [entry, state]),
     [
-      ['identity', 'issue'],
+      ['registration', 'issue'],
       ['', 'open'],
     ],
   );
@@ -164,22 +164,22 @@ test('the record holds it all as its schema says, and its export is in the audit
 });
 
 test('when the files change, earlier lines stand under the earlier revision, and stay', async () => {
-  const before = (await record()).checklist.find(({ entry }) => entry === 'identity');
+  const before = (await record()).checklist.find(({ entry }) => entry === 'registration');
   const file = join(plans, 'phantom', 'README.txt');
   writeFileSync(file, `${readFileSync(file, 'utf8')}\nchanged`);
   await call(`${daemon.url}/api/v1/plans`); // has the folders listed
   const now = revisionOf(join(plans, 'phantom'));
   await until(revision, ({ revision: found }) => found === now);
-  const again = await put(ben, 'check', { entry: 'identity', text: 'Plan and side', state: 'ok' });
+  const again = await put(ben, 'check', { entry: 'registration', text: 'Plan and side', state: 'ok' });
   assert.equal(again.body.plan_revision, now);
   const old = await put(
     ben,
     'check',
-    { entry: 'identity', text: 'Plan and side', state: 'ok' },
+    { entry: 'registration', text: 'Plan and side', state: 'ok' },
     { item: before.id, version: before.version },
   );
   assert.deepEqual([old.type, old.code], ['/problems/forbidden', 'append-only']);
-  const both = (await record()).checklist.filter(({ entry }) => entry === 'identity').map(({ plan_revision: of }) => of);
+  const both = (await record()).checklist.filter(({ entry }) => entry === 'registration').map(({ plan_revision: of }) => of);
   assert.deepEqual(both, [before.plan_revision, now]);
 });
 
