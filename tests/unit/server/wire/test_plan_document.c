@@ -32,7 +32,7 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
 {
     (void)state;
     struct plan plan = { .id = "head", .name = "Head \"1\"", .is_phantom = true, .load_us = 1500 };
-    plan.bounds_lps_mm = box3_empty();
+    plan.bounds_lps_mm = plan.body_lps_mm = box3_empty();
     plan.n_images = 1;
     plan.images[0] =
         (struct plan_image){ .id = "ct", .modality = "CT", .unit = "HU", .window_center = 40, .window_width = 400 };
