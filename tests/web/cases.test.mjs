@@ -51,7 +51,7 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     const grants = ['* pat planner', `${folder}/a rae reviewer`, '* ola reviewer', '* fay reviewer'];
     world = await startWorld({
       plans: [join(folder, 'a'), join(folder, 'b')],
-      args: ['--stub', '--sign-in', 'local', ...grants.flatMap((line) => ['--grant', line])],
+      args: ['--stub', '--sign-in', 'local', '--guest-links', ...grants.flatMap((line) => ['--grant', line])],
     });
     const token = await until(
       () => /signin\/first#([0-9a-f]{64})/.exec(world.daemon.log())?.[1],
@@ -100,6 +100,19 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     await Promise.all(['fay', 'rae', 'ola'].map((user) => isIn(pages[user], 1)));
     await Promise.all(['fay', 'rae', 'ola'].map((user) => says(pages[user], /Following Pat/)));
     assert.match(await title(pages.fay), /First plan/);
+  });
+
+  later('a guest comes in by the link of the meeting, and is not told the agenda', async () => {
+    const link = (await api(`/meetings/${meeting}/links`, 'pat', 'POST', { role: 'observer', guests: true })).json;
+    pages.guest = await world.newPage(link.url.slice(1));
+    await pages.guest.fill('#guest-name', 'Prof. Lind');
+    await pages.guest.keyboard.press('Enter');
+    await isIn(pages.guest, 1);
+    await chip(pages.guest).locator('.chip-main').click();
+    await pages.guest.locator('.meeting-card h2', { hasText: 'Tumour board' }).waitFor();
+    assert.equal(await pages.guest.locator('.meeting-card li, .meeting-card a').count(), 0);
+    await pages.guest.keyboard.press('Escape');
+    assert.match(pages.guest.url(), /\/rooms\//, 'nothing asked them to sign in');
   });
 
   it('the next case takes along who follows, behind a card with the new plan alone; who looks on their own is asked; who may not see it waits', async () => {
@@ -162,8 +175,9 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     const made = pages.pat.getByLabel('The link, told once');
     await made.waitFor();
     assert.match(await made.inputValue(), new RegExp(`/meetings/${meeting}#link=[0-9a-f]{32}$`));
-    await pages.pat.locator('.case-links button', { hasText: 'End it' }).click();
-    await pages.pat.locator('.case-links li').waitFor({ state: 'detached' });
+    const ofReviewer = pages.pat.getByRole('button', { name: 'End it: link of reviewer' });
+    await ofReviewer.click();
+    await ofReviewer.waitFor({ state: 'detached' });
     await rows.nth(2).locator('button').click();
     await Promise.all(Object.values(pages).map((page) => isIn(page, 3)));
     for (const page of Object.values(pages)) await page.locator('.banner', { hasText: 'Third plan' }).waitFor();

@@ -48,7 +48,7 @@ export function agenda(world) {
       (one, index) => row(one, index, meeting),
     )}</ol>
     ${list?.may.edit ? inviteBlock(meeting, Boolean(world.session?.value?.facts.value.guest_links)) : nothing}
-    <div class="room-actions"><a class="button" href=${`/meetings/${told.meeting}/minutes`} target="_blank" title=${say.minutesIs}>${say.minutes}</a>
+    <div class="room-actions">${meeting.isGuest() ? nothing : html`<a class="button" href=${`/meetings/${told.meeting}/minutes`} target="_blank" title=${say.minutesIs}>${say.minutes}</a>`}
     ${
       mayEnd
         ? html`<button title=${say.endIs} @click=${() => {

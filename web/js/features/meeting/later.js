@@ -65,7 +65,14 @@ export function join(world) {
     else connection.send({ type: 'meeting.go', to: to ?? '' });
   };
 
+  /** Somebody who came by a link without signing in: the agenda is not told to them. */
+  const isGuest = () => {
+    const signedIn = world.session?.peek();
+    return Boolean(signedIn?.facts.peek().sign_in.length && !signedIn.person.peek());
+  };
+
   async function look() {
+    if (isGuest()) return;
     list.value = await call('GET', '').catch(() => list.peek());
   }
 
@@ -92,6 +99,7 @@ export function join(world) {
     asks,
     list,
     isInviting,
+    isGuest,
     call,
     take,
     along,
