@@ -2,7 +2,6 @@
 #include "server/net/listed.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -42,11 +41,9 @@ static bool find_awake(const struct net_room *entry, const struct identity *who,
         room_kept_finish(&kept);
     }
     const int64_t empty_ms = entry->empty_since_us ? (clock_now_us() - entry->empty_since_us) / 1000 : 0;
-    char *names = room_names_in(room);
     row->name = room_name(room);
     row->used_ms = clock_wall_ms() - empty_ms;
-    (void)snprintf(row->names, sizeof row->names, "%s", names ? names : "");
-    free(names);
+    room_names_in(room, row->names);
     return true;
 }
 
@@ -76,7 +73,7 @@ static cJSON *asleep_document(const struct net *net, const struct store_summary 
     const struct room_facts row = { .id = facts->id,
                                     .plan_id = rooms_plan_id_now(net, facts->plan, known),
                                     .name = facts->name,
-                                    .names = facts->names,
+                                    .names = facts->names ? facts->names : "",
                                     .revision = facts->revision,
                                     .renderer = WIRE_RENDERER_STATE_CLOSED,
                                     .created_at_s = facts->created_ms / 1000,

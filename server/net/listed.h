@@ -6,7 +6,7 @@ struct net_listed {
     const char *name; /* borrowed; "": none was given */
     bool is_mine;     /* the user's own, one they were in or were asked to; true of all for the machine's person */
     int64_t used_ms;  /* when somebody was last in it, since 1970 */
-    char names[ROOM_MAX_NAMES * 164]; /* of those who were in it, each ended by '\n' */
+    char names[ROOM_NAMES_BYTES]; /* of those who were in it, each ended by '\n' */
 };
 
 size_t net_n_listed(const struct net *net);

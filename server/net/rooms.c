@@ -199,7 +199,9 @@ static bool put_to_sleep(struct net *net, size_t index)
     facts.is_open = kept.is_open;
     facts.is_changed = kept.is_changed;
     facts.n_notes = (uint32_t)room_n_notes(room->room);
-    facts.names = room_names_in(room->room);
+    facts.names = mem_array(ROOM_NAMES_BYTES, 1, ROOM_NAMES_BYTES, NULL);
+    if (facts.names)
+        room_names_in(room->room, facts.names);
     facts.users = room_users_in(room->room);
     facts.people = kept.people;
     kept.people = NULL;

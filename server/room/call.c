@@ -190,7 +190,7 @@ bool room_act_may(const struct room *room, const char *member, enum wire_right r
 static cJSON *read_lines(const char *lines)
 {
     cJSON *list = cJSON_CreateArray();
-    for (size_t n; lines && (n = strcspn(lines, "\n")) > 0; lines += n + (lines[n] == '\n')) {
+    for (size_t n; (n = strcspn(lines, "\n")) > 0; lines += n + (lines[n] == '\n')) {
         char line[STORE_PERSON];
         (void)snprintf(line, sizeof line, "%.*s", (int)(n < sizeof line ? n : sizeof line - 1), lines);
         json_append(list, cJSON_CreateString(line));
@@ -252,7 +252,8 @@ bool room_link_revoke(struct room *room, const char *id, const char *by, const c
 
 cJSON *room_document(const struct room *room)
 {
-    char *names = room_names_in(room);
+    char names[ROOM_NAMES_BYTES];
+    room_names_in(room, names);
     const struct room_facts facts = { .id = room->id,
                                       .plan_id = room->plan_id,
                                       .name = room->name,
@@ -261,9 +262,7 @@ cJSON *room_document(const struct room *room)
                                       .renderer = room->renderer.state,
                                       .created_at_s = room->created_at_s,
                                       .n_notes = room_n_notes(room) };
-    cJSON *json = make_document(&facts, false, room_members(room));
-    free(names);
-    return json;
+    return make_document(&facts, false, room_members(room));
 }
 
 cJSON *room_document_of(const struct room_facts *facts)

@@ -30,9 +30,9 @@ void room_rename(struct room *room, const char *name, const struct identity *who
                  const char *address, int64_t now_us);
 /* Whether the user of this identity has or had a seat. */
 bool room_was_in(const struct room *room, const struct identity *who);
-/* For free(): names of up to ROOM_MAX_NAMES of those who were in, each ended by '\n'; users likewise, of all. NULL: no
- * memory. */
-NODISCARD char *room_names_in(const struct room *room);
+/* Names of up to ROOM_MAX_NAMES of those who are or were in, each ended by '\n'. */
+void room_names_in(const struct room *room, char names[ROOM_NAMES_BYTES]);
+/* Ids of all users who are or were in, likewise, for free(); NULL: no memory. */
 NODISCARD char *room_users_in(const struct room *room);
 size_t room_n_notes(const struct room *room);
 

@@ -48,8 +48,6 @@ void name_set(struct room *room, const char *name, const struct identity *who, c
 
 /* ---- who has been there ----------------------------------------------------------------------------------------- */
 
-enum { NAMES_BYTES = ROOM_MAX_NAMES * 164 };
-
 /* Adds the line to the list, once. False: it has no place. */
 static bool add_line(char *list, size_t size, const char *line)
 {
@@ -66,17 +64,16 @@ static bool add_line(char *list, size_t size, const char *line)
 
 static const char wall[] = "wall";
 
-char *room_names_in(const struct room *room)
+void room_names_in(const struct room *room, char names[ROOM_NAMES_BYTES])
 {
-    char *list = mem_array(NAMES_BYTES, 1, NAMES_BYTES, NULL);
     int n = 0;
-    for (int i = 0; list && i < room->members.n && n < ROOM_MAX_NAMES; i++)
+    names[0] = 0;
+    for (int i = 0; i < room->members.n && n < ROOM_MAX_NAMES; i++)
         if (room->members.list[i]->role != WIRE_MEMBER_ROLE_WALL)
-            n += add_line(list, NAMES_BYTES, room->members.list[i]->name);
-    for (int i = room->known->n; list && i-- > 0 && n < ROOM_MAX_NAMES;)
+            n += add_line(names, ROOM_NAMES_BYTES, room->members.list[i]->name);
+    for (int i = room->known->n; i-- > 0 && n < ROOM_MAX_NAMES;)
         if (strcmp(room->known->list[i].role, wall) != 0)
-            n += add_line(list, NAMES_BYTES, room->known->list[i].name);
-    return list;
+            n += add_line(names, ROOM_NAMES_BYTES, room->known->list[i].name);
 }
 
 char *room_users_in(const struct room *room)

@@ -226,7 +226,7 @@ struct room_act {
 };
 
 /* Parts of a room that are kept on disk. */
-enum { ROOM_MAX_NAMES = 8 }; /* of those who were in a room, in a list */
+enum { ROOM_MAX_NAMES = 8, ROOM_NAMES_BYTES = ROOM_MAX_NAMES * 164 }; /* of those who were in a room, in a list */
 enum { ROOM_NAME_LETTERS = 80, ROOM_NAME_BYTES = 4 * ROOM_NAME_LETTERS + 1 };
 
 enum room_part {
