@@ -118,6 +118,9 @@ export const tours = {
     await button(page, 'Maximise 3-D').click();
     await settled(page, [1]);
     await shot(page, 'volume');
+    await page.getByRole('button', { name: '3-D picture', exact: true }).click();
+    await page.locator('.block.lights').waitFor();
+    await look(page);
   },
 
   async 'two images'({ room, look }) {
