@@ -1,4 +1,4 @@
-// What stands around the panes: keys from anywhere and the list in which they are changed.
+// Around the panes: keys from anywhere and the list in which they are changed.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { axe } from './axe.mjs';

@@ -257,7 +257,7 @@ export class PaneActions {
     return true;
   }
 
-  /** What keys do that nobody changes: arrows and pages, digits, those of a tool. */
+  /** The act of a key that nobody changes: arrows and pages, digits, those of a tool. */
   #fixedKey(event, at) {
     return (
       this.tools.key(event, at) ?? this.#otherKey(event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#placedKey(event, at))

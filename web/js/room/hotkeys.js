@@ -55,7 +55,7 @@ export const keyText = (combo) =>
     .replace(/Shift(?=\+)/, say.shift)
     .replace(/Space$/, say.space);
 
-/** What the browser kept, as far as it is that. */
+/** Keys that the browser kept; entries that are no keys are left out. */
 function read(storage) {
   try {
     const { own = {}, areSinglesOff } = JSON.parse(storage?.getItem(key) ?? '{}');

@@ -11,7 +11,7 @@ const clamp = (value, low, high) => Math.min(Math.max(value, low), Math.max(low,
 const columnsOf = { '2x2': 'columns', '2x1': 'columns', '1+3': 'large' };
 const rowsOf = { '2x2': 'rows', '1x2': 'rows' };
 
-/** As far as that is what a browser kept. */
+/** Splits that the browser kept; entries that are none are left out. */
 export const readSplits = (kept) =>
   Object.fromEntries(Object.entries(kept ?? {}).filter(([name, value]) => Object.hasOwn(standard, name) && Number.isFinite(value)));
 

@@ -73,7 +73,7 @@ export class Undo {
     this.#tell();
   }
 
-  /** What a reload keeps: the steps of the room and of one's marks. Own views begin anew, and acts are functions. */
+  /** Steps that a reload keeps: those of the room and of one's marks. Own views begin anew, and acts are functions. */
   get kept() {
     const of = (steps) =>
       steps.filter(({ act, place }) => !act && place !== 'own').map(({ changes, place }) => ({ place, changes: [...changes.values()] }));

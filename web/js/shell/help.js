@@ -40,7 +40,7 @@ const rows = [
   [say.escape, say.escapeIs],
 ];
 
-/** What a command does, by its name in room/commands.js. */
+/** Words for the act of each command, by its name in room/commands.js. */
 export const commandWords = {
   zoomIn: say.zoomIn,
   zoomOut: say.zoomOut,
@@ -152,7 +152,7 @@ function commandRow(keys, id, what) {
     }</li>`;
 }
 
-/** What was pressed cannot be the key, or another command has it. */
+/** Tells that the pressed key cannot be used, or that another command has it. */
 function answer(keys, id) {
   const { combo, problem, other } = asked.value;
   if (problem) return html`<p class="warn" role="alert">${problem}</p>`;
