@@ -100,9 +100,9 @@ static void one_was_read(void *context, const struct net_record *records, size_t
         return;
     cJSON *answer = describe(&records[0]);
     json_add(answer, "item", cJSON_CreateRaw(records[0].item));
-    json_add(answer, "body", cJSON_CreateRaw(records[0].body));
     json_add(answer, "signatures", cJSON_CreateRaw(records[0].signatures ? records[0].signatures : "[]"));
     json_add(answer, "later_decisions", cJSON_CreateRaw(records[0].decisions ? records[0].decisions : "[]"));
+    json_add(answer, "body", cJSON_CreateRaw(records[0].body));
     call_answer_json(call, 200, answer);
 }
 
