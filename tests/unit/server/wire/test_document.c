@@ -186,7 +186,8 @@ static void every_field_that_names_something_of_the_plan_is_refused_when_the_pla
 {
     (void)state;
     /* regions, check.region, image.id, image.looks, image.blend.id, beam.id, beam.looks, clip.beam.id, and of a dose:
-     * id, sum, tissue, weights, reference.region, coverage.region, coverage.tissue, compare.id, and irradiation.fields */
+     * id, sum, tissue, weights, reference.region, coverage.region, coverage.tissue, compare.id, and irradiation.fields
+     */
     assert_int_equal(expect_references(&scene_object, "{", "}", ""), 17);
     cJSON *defaults = plan_defaults();
     cJSON *scene = patched(defaults, defaults,
