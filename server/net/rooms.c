@@ -207,8 +207,7 @@ static bool put_to_sleep(struct net *net, size_t index)
     kept.people = NULL;
     room_kept_finish(&kept);
     asleep_add(net, &facts);
-    room_end_because(room->room, "the room sleeps, as nobody is in it"); /* told to who listens */
-    rooms_close(net, index);
+    close_because(net, index, ROOM_SLEEPS); /* told to who listens, and to walls */
     return true;
 }
 

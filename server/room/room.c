@@ -95,11 +95,12 @@ void room_destroy(struct room *room)
     if (!room)
         return;
     recordings_finish(room);
+    const bool sleeps = strcmp(room->end_reason, ROOM_SLEEPS) == 0; /* only walls are in it */
     listeners_end(room, room->end_reason[0] ? room->end_reason : room_is_closed);
     for (int i = 0; i < room->members.n; i++)
         if (room->members.list[i]->connection)
-            send_bye(room, room->members.list[i]->connection, -1,
-                     room->end_reason[0] ? room->end_reason : room_is_closed);
+            send_bye_for(room, room->members.list[i]->connection, sleeps ? "asleep" : "", -1,
+                         room->end_reason[0] ? room->end_reason : room_is_closed);
     members_free(room);
     while (room->streams.first)
         stream_destroy(room, room->streams.first);

@@ -19,6 +19,7 @@ const clock = {
 };
 const home = location.pathname.split('/').pop(); // the room of the address, at which a wall that is started anew begins
 const host = document.querySelector('#wall');
+const sleepMs = 3000;
 
 /** The storage of this tab; null where the browser keeps nothing. */
 function storageOfTab() {
@@ -59,6 +60,19 @@ function goTo(message) {
   location.reload();
 }
 
+/** Looks again and again whether the room is awake, by a question that wakes no room; who came by a link has no right to ask, and enters again. */
+function waitForPeople(room, link) {
+  const ask = async () => {
+    const abort = new AbortController();
+    const answer = await fetch(`/api/v1/rooms/${room}/stream`, { signal: abort.signal }).catch(() => null);
+    const isAwake = answer?.ok || answer?.status === 404 || (answer?.status === 401 && link);
+    abort.abort();
+    if (isAwake) location.reload();
+    else clock.setTimeout(ask, sleepMs);
+  };
+  clock.setTimeout(ask, sleepMs);
+}
+
 function start() {
   const move = takeMove();
   const room = move?.room ?? home;
@@ -86,6 +100,7 @@ function start() {
   connection.addEventListener('ended', ({ detail }) => {
     const meeting = storage?.getItem(meetingKey);
     if (detail.code === 'removed') return;
+    if (detail.code === 'asleep') return waitForPeople(room, link);
     if (room !== home) location.reload();
     else if (meeting && link) location.replace(`/meetings/${meeting}#link=${link}`);
   });

@@ -53,6 +53,7 @@ enum {
 
 /* Why bye is said to those a room is closed to, as if it were not there; and to who has not signed in. */
 #define ROOM_IS_CLOSED "the room is closed"
+#define ROOM_SLEEPS "the room sleeps, as nobody is in it"
 #define ROOM_NEEDS_SIGN_IN "sign in to enter this room"
 
 struct message; /* wire_gen.h */
