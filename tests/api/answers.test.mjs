@@ -92,6 +92,7 @@ test('questions about the plan and its dose', async () => {
     'dvh?regions=brain,target',
     'coverage?region=target&low=1',
     'constraints',
+    'irradiation',
     'profile?beam=beam-1',
     'gamma',
     'beam?beam=beam-1',
@@ -148,6 +149,7 @@ test('rooms, and what their members write down', async () => {
     (answer) => answer.records.length > 0,
   );
   await ask(`/api/v1/records/${records[0].id}`);
+  await ask(`/api/v1/records/${records[0].id}/paper`);
   await ask('/api/v1/audit');
   ann.send({ type: 'recording.start' });
   const { recordings } = await until(
