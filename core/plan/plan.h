@@ -68,7 +68,7 @@ struct plan {
     struct plan_preferences preferences;
     struct report report;
     struct box3 bounds_lps_mm; /* of all regions, else of all images and doses, else around the beams' targets */
-    /* Of the body, which slices show at first; empty, with finite ends: all of the image. */
+    /* The body, which slices show at first; empty, with finite ends: all of the image. */
     struct box3 body_lps_mm;
     int64_t load_us;
     bool is_from_cache; /* read from the cache instead of the folder's files */

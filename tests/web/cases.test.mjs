@@ -35,7 +35,7 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     chip(page)
       .locator('b', { hasText: `${n}/3` })
       .waitFor();
-  /** What must never be seen: something of the page before, below the name of the new plan. */
+  /** Marks the panes, so that something of the page before, which must never be seen below the name of the new plan, is found. */
   const mark = (page) =>
     page.evaluate(() => document.querySelectorAll('.pane canvas, .pane').forEach((element) => element.setAttribute('data-before', '')));
   const nBefore = (page) => page.evaluate(() => document.querySelectorAll('[data-before]').length);

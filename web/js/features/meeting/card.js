@@ -1,4 +1,4 @@
-// What lies over the page between two cases: the card with the next patient on plain ground, "not open to you", the question whether to go along.
+// The page between two cases: a card with the next patient on plain ground, "not open to you", the question whether to go along.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { icon } from '../../parts/icons.js';
 import { mount } from '../../parts/mount.js';
