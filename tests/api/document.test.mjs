@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { startDaemon } from './daemon.mjs';
+import { call, startDaemon, until } from './daemon.mjs';
 import { parseStrict } from './strict_json.mjs';
 
 const hasCurl = () => {
@@ -61,6 +61,10 @@ describe('docs/api.md', () => {
   before(async () => {
     if (skip) return;
     daemon = await startDaemon();
+    await until(
+      async () => (await call(`${daemon.url}/api/v1/plans`)).json.plans,
+      (plans) => plans.every(({ name, id }) => name !== id), // what lies in the folder is read after the start
+    );
     folder = mkdtempSync(join(tmpdir(), 'beamroom-document-'));
     // one shell for all, so that what a command sets is there for the next one
     shell = spawn('bash', ['--norc'], { cwd: folder, env: { ...process.env, BEAMROOM: daemon.url }, stdio: ['pipe', 'pipe', 'pipe'] });

@@ -71,6 +71,7 @@ describe('a name the plan does not have', () => {
         '/image/blend/id',
         '/image/id',
         '/image/looks/nowhere',
+        '/irradiation/fields/nowhere',
         '/regions/nowhere',
       ],
     );

@@ -31,7 +31,7 @@ for (const [name, [center, width]] of Object.entries(windows))
     const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: name })).json.id;
     const { status, json } = await call(`${daemon.url}/api/v1/rooms/${room}/scene`);
     assert.equal(status, 200);
-    assert.deepEqual(json.image.window, { center, width });
+    assert.deepEqual(json.image.window, { center, width, gamma: 1 });
   });
 
 test('a window beyond the limits is refused with the place and what is expected', async () => {

@@ -62,7 +62,7 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     await page.evaluate(() => localStorage.setItem('beamroom name', 'X'));
     await page.getByRole('button', { name: 'Sign out' }).click();
     await page.locator('#sign-in-user').waitFor();
-    assert.equal(await page.evaluate(() => localStorage.length + sessionStorage.length), 0);
+    assert.deepEqual(await page.evaluate(() => [...Object.keys(localStorage), ...Object.keys(sessionStorage)]), []);
     await page.goto(world.daemon.url);
     await page.waitForURL(/\/signin\?return=%2F$/);
   });
