@@ -263,7 +263,7 @@ test-faults: $(faults_BIN)
 # out whole. Each part of the page and of the interface has tests in what they run: whole_meeting.test.mjs has one of each thing that people do together.
 LONG_TESTS ?= 1
 DEEP_NODE := tests/api/missing.test.mjs tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,daemon_restart guide meeting notes planner_hour pointers record recording restart roster saved)
-LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/api/rest.test.mjs $(patsubst %,tests/web/%.test.mjs,axe beam_eye bookmarks charts clip dose greys image language layout legend measure page pointed \
+LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/api/rest.test.mjs $(patsubst %,tests/web/%.test.mjs,axe beam_eye bookmarks cases charts clip display dose greys image language layout legend measure page pointed \
     regions shell snapshot start touch tracks upload views)
 # What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest of the api tests wait for most of their time.
 ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs

@@ -76,7 +76,8 @@ export function keepLook(storage) {
   effect(() => {
     const kept = JSON.stringify({ size: pageSize.value, colours: pageColours.value });
     try {
-      if (pageSize.value === 100 && pageColours.value === 'dark') storage?.removeItem(key); // nothing chosen, nothing kept
+      if (pageSize.value === 100 && pageColours.value === 'dark')
+        storage?.removeItem(key); // nothing chosen, nothing kept
       else storage?.setItem(key, kept);
     } catch {
       // a browser that keeps nothing starts with the standard next time
