@@ -21,6 +21,17 @@ export const overPictures = (page) =>
     const pictures = [...document.querySelectorAll('.picture')]
       .map((picture) => ({ view: picture.closest('[data-view]').dataset.view, box: picture.getBoundingClientRect() }))
       .filter(({ box }) => box.width > 2);
+    /** The part of a box that no ancestor of this element cuts off. */
+    const clipped = (element, { left, top, right, bottom }) => {
+      const box = { left, top, right, bottom };
+      for (let at = element; at; at = at.parentElement) {
+        const { overflowX, overflowY } = getComputedStyle(at);
+        const outer = at.getBoundingClientRect();
+        if (overflowX !== 'visible') [box.left, box.right] = [Math.max(box.left, outer.left), Math.min(box.right, outer.right)];
+        if (overflowY !== 'visible') [box.top, box.bottom] = [Math.max(box.top, outer.top), Math.min(box.bottom, outer.bottom)];
+      }
+      return box;
+    };
     const found = [];
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     const range = document.createRange();
@@ -30,10 +41,11 @@ export const overPictures = (page) =>
       if (!element.checkVisibility({ opacityProperty: true, visibilityProperty: true }) || getComputedStyle(element).clipPath !== 'none')
         continue;
       range.selectNodeContents(walker.currentNode);
-      for (const rect of range.getClientRects())
+      for (const rect of [...range.getClientRects()].map((whole) => clipped(element, whole)))
         for (const { view, box } of pictures)
           if (rect.left < box.right - 1 && rect.right > box.left + 1 && rect.top < box.bottom - 1 && rect.bottom > box.top + 1)
-            found.push(`"${data.trim().slice(0, 40)}" over the picture of view ${view}`);
+            if (rect.right - rect.left > 1 && rect.bottom - rect.top > 1)
+              found.push(`"${data.trim().slice(0, 40)}" over the picture of view ${view}`);
     }
     return [...new Set(found)];
   }, allowed);

@@ -222,6 +222,10 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
   });
 
   later('the keys do nothing for who may not, and the end stays', async () => {
+    const [first, , third] = cases;
+    assert.equal((await api(`/meetings/${meeting}/case`, 'pat', 'POST', { case: third, from: first })).status, 200);
+    await isIn(pages.pat, 3);
+    await isIn(pages.fay, 3);
     await pages.fay.keyboard.press('Shift+N');
     await pages.fay.locator('.toast', { hasText: 'Who presents has the meeting go on' }).waitFor();
     await pages.pat.keyboard.press('Shift+N');
