@@ -235,7 +235,7 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     assert.ok(beam.slice.along_mm > 40.3);
     await until(
       () => page.locator(`[data-view="${slicePane}"] .where`).textContent(),
-      (words) => words.startsWith(`${beam.slice.along_mm.toFixed(1)} mm from entry, `),
+      (words) => words.startsWith(`${beam.slice.along_mm.toFixed(1)} mm from source end, `),
       60000,
     );
     await shoot(page, 'beam-eye-and-slice-1600x1000');

@@ -26,10 +26,14 @@ export const measures = {
   kinds: { measure: 'measures', measures: '' },
   blocks,
   isSoon: true,
-  pane: ({ room, ui, ellipses, box, pointAt }, view) =>
-    laterPart(
+  pane({ room, ui, ellipses, box, pointAt }, view) {
+    const part = laterPart(
       () => ui.tool.value === 'measure' || hasMeasures(room.scene.value),
       blocks,
       ({ PaneMeasures }) => new PaneMeasures({ room, ui, ellipses }, view, box, pointAt),
-    ),
+    );
+    const isComing = ({ key }) => ui.tool.value === 'measure' && !known(blocks) && ['Enter', 'Backspace'].includes(key);
+    const once = (event, at) => () => blocks.load().then(() => part.key(event, at)?.()); // a quick hand is not maximising the pane
+    return { ...part, key: (event, at) => part.key(event, at) ?? (isComing(event) ? once(event, at) : null) };
+  },
 };
