@@ -1,6 +1,8 @@
 /* Passes lines of the library on, and tells descriptors apart by their inodes. */
+#define _GNU_SOURCE /* AT_EMPTY_PATH */
 #include "server/ws/library.h"
 
+#include <fcntl.h>
 #include <libwebsockets.h>
 #include <limits.h>
 #include <string.h>
@@ -31,11 +33,12 @@ int library_places(void)
 }
 
 /* The library has closed some of those that it did not adopt itself, and others not. before: the descriptor's facts
- * from then, as another thread may have been given the number since. */
+ * from then, as another thread may have been given the number since. fstatat: for fstat the thread sanitizer takes the
+ * descriptor of that thread as shared. */
 static void close_refused(int fd, const struct stat *before)
 {
     struct stat now;
-    if (fstat(fd, &now) == 0 && now.st_ino == before->st_ino && now.st_dev == before->st_dev)
+    if (fstatat(fd, "", &now, AT_EMPTY_PATH) == 0 && now.st_ino == before->st_ino && now.st_dev == before->st_dev)
         (void)close(fd);
 }
 
