@@ -234,7 +234,7 @@ describe('the page in another language', { skip: missing && `${missing} is not t
     }
   });
 
-  it('goes through signing in, and what people who signed in have', async () => {
+  later('goes through signing in, and what people who signed in have', async () => {
     const ours = await world.newRoom(); // whose first member may do everything
     const person = { user: 'a.k', name: 'A 1', groups: [], source: 'password', proved_ms: 1 };
     let identity = null;

@@ -182,7 +182,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  once('light colours: the pictures stay dark, contrast is enough, and the system is followed', async () => {
+  later('light colours: the pictures stay dark, contrast is enough, and the system is followed', async () => {
     const page = await open({ colorScheme: 'light' });
     const ground = (selector) =>
       page
