@@ -263,8 +263,8 @@ test-faults: $(faults_BIN)
 # out whole. Each part of the page and of the interface has tests in what they run: whole_meeting.test.mjs has one of each thing that people do together.
 LONG_TESTS ?= 1
 DEEP_NODE := tests/api/missing.test.mjs tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,daemon_restart guide meeting notes planner_hour pointers record recording restart roster saved)
-LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/api/rest.test.mjs $(patsubst %,tests/web/%.test.mjs,axe beam_eye bookmarks cases charts clip display dose greys image language layout legend measure page pointed \
-    regions shell snapshot start touch tracks upload views)
+LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/api/rest.test.mjs $(patsubst %,tests/web/%.test.mjs,axe beam_draft beam_eye bookmarks cases charts clip display dose greys image language layout legend measure page pointed \
+    regions shell snapshot start touch tracks upload views watch)
 # What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest of the api tests wait for most of their time.
 ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs
 # All of them from one queue: what is left of one suite runs beside the next. On a page three things wait for each other, so few of these run at once.

@@ -107,15 +107,13 @@ test('an accepted dose is drawn, in that room alone; withdrawn, the picture is b
 
 test('frames of a member are drawn anew when it is accepted and when it is withdrawn', async () => {
   ann.send({ type: 'view.open', view: 2, document: view, follow: true });
-  await ann.until(() => ann.frames.length > 0, 'a picture');
-  await sleep(500); // until it is at rest
+  await ann.frame(({ isStill }) => isStill); // now it is at rest
   const before = ann.frames.length;
   await give(ann, { type: 'item.delete', item: item.id, version: item.version });
-  await ann.until(() => ann.frames.length > before, 'a picture');
-  await sleep(500);
+  await ann.frame(({ isStill }) => isStill, before);
   const next = ann.frames.length;
   item = await accept(ann);
-  await ann.until(() => ann.frames.length > next, 'a picture');
+  await ann.frame(({ isStill }) => isStill, next);
 });
 
 test('a saved view, its permalink, a room that begins with it, and a replay hold no acceptance', async () => {

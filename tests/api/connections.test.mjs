@@ -31,12 +31,12 @@ describe('WebSockets of one address', () => {
     all.drop();
     other.drop();
     const again = async () => {
-      const c = open(daemon.url, handshake, { from: '127.0.2.1', ms: 10000 });
+      const c = open(daemon.url, handshake, { from: '127.0.2.1', ms: 60000 });
       await c.answered;
       c.socket.destroy();
       return statuses(c.text)[0];
     };
-    assert.equal(await until(again, (status) => status === 101, 20000), 101, 'those that ended count no longer');
+    assert.equal(await until(again, (status) => status === 101), 101, 'those that ended count no longer');
   });
 });
 
@@ -184,7 +184,7 @@ describe('connections that are gone while their requests wait', () => {
         for (const c of some) c.socket.resetAndDestroy();
         return page('127.0.6.1');
       };
-      assert.equal(await until(askAndGo, (status) => status === 429, 20000), 429);
+      assert.equal(await until(askAndGo, (status) => status === 429), 429);
       assert.equal(await page('127.0.6.2'), 200, 'another address is served');
     } finally {
       await daemon.stop();
@@ -289,7 +289,7 @@ describe('the process', { concurrency: 4 }, () => {
       assert.equal(manager.lines()[0], 'READY=1');
       assert.ok(manager.lines().filter((line) => line === 'WATCHDOG=1').length >= 3);
       assert.equal(await daemon.stop(), 0);
-      await until(manager.lines, (lines) => lines.at(-1) === 'STOPPING=1', 5000);
+      await until(manager.lines, (lines) => lines.at(-1) === 'STOPPING=1');
       assert.equal(manager.lines().at(-1), 'STOPPING=1');
     } finally {
       await daemon.stop();
@@ -310,13 +310,15 @@ describe('the process', { concurrency: 4 }, () => {
         await until(daemon.log, (log) => log.includes(`the ${thread} thread has not moved`));
         assert.match(daemon.log(), new RegExp(`the ${thread} thread has not moved`));
         await until(manager.lines, (lines) => lines.includes('READY=1'));
-        await sleep(800); /* datagrams sent before may still arrive */
-        const n = manager.lines().length;
-        await sleep(1600); /* twice the watchdog's time */
+        let n = -1; // datagrams sent before may still arrive
+        for (let tries = 0; tries < 8 && n !== manager.lines().length; tries++) {
+          n = manager.lines().length;
+          await sleep(1600); /* twice the watchdog's time */
+        }
         assert.equal(manager.lines().length, n, 'nothing is told any more');
         const began = performance.now();
         assert.equal(await daemon.stop(), 1, 'ended by itself');
-        assert.ok(performance.now() - began < 10000, `after ${performance.now() - began} ms`);
+        assert.ok(performance.now() - began < 30000, `after ${performance.now() - began} ms`);
         assert.match(daemon.log(), /the process ends without it/);
       } finally {
         await daemon.stop();

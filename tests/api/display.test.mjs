@@ -314,13 +314,15 @@ describe('displays', () => {
       const member = await Client.open(other.url, `/api/v1/rooms/${room}/ws`);
       member.send({ type: 'hello', protocol: 2, name: 'member' });
       await member.message('welcome');
+      await member.ready(); // before that the scene cannot be changed
       // a room in which nobody changed anything leaves no trace
-      await call(
+      const patched = await call(
         `${other.url}/api/v1/rooms/${room}/scene`,
         'PATCH',
         { image: { slices: { axial: { position_mm: 3 } } }, axes: { visible: true } },
         { 'If-Match': '*' },
       );
+      assert.equal(patched.status, 200, patched.text);
       const screen = await Screen.open(other.url, `/api/v1/rooms/${room}/stream`);
       await screen.part();
       member.cut();

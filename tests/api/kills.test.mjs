@@ -96,7 +96,11 @@ let nTexts = 0;
 
 async function enter(daemon, room, hello, heard) {
   const client = await Client.hello(daemon.url, room, hello);
-  const first = await client.until(() => client.messages.find(({ type }) => type === 'welcome' || type === 'bye'), 'welcome or bye');
+  const first = await client.until(
+    () => client.messages.find(({ type }) => type === 'welcome' || type === 'bye') ?? client.closeCode,
+    'welcome or bye',
+  );
+  if (typeof first === 'number') throw new Error('the daemon was killed before it could answer');
   let n = client.messages.indexOf(first) + 1;
   client.drain = () => {
     while (n < client.messages.length) heard?.(client.messages[n++]);
@@ -148,7 +152,9 @@ async function links(daemon, room, client, by) {
     // saved only by what the server says after it has answered this
     const time = performance.now();
     client.send({ type: 'ping', time_ms: time });
-    await client.message('pong', (pong) => pong.time_ms === time);
+    const found = () => client.messages.some((pong) => pong.type === 'pong' && pong.time_ms === time);
+    await client.until(() => found() || client.closeCode, 'pong');
+    if (!found()) throw new Error('the daemon was killed before it could answer');
     client.drain();
     fresh.tokens.set(token, person);
   };

@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { call, demo, startDaemon, until } from './daemon.mjs';
 import { FullDisk } from './full_disk.mjs';
+import { casesOnDisk } from './on_disk.mjs';
 import { Client } from './ws_client.mjs';
 
 const password = 'correct horse';
@@ -393,7 +394,10 @@ describe('A meeting of three cases', { concurrency: false }, () => {
       async () => (await ok(`/meetings/${meeting}`, pat)).cases[2].decision,
       (word) => word === 'accept',
     );
-    await new Promise((done) => setTimeout(done, 1100)); // who is there is written within a second
+    await until(
+      () => casesOnDisk(meeting, join(folder, 'data')), // who is there is written a moment later
+      ([, , third]) => ['Pat Lee', 'Rae', 'Dr. Guest'].every((name) => JSON.stringify(third.stays ?? []).includes(name)),
+    );
     daemon.child.kill('SIGKILL');
     await new Promise((done) => daemon.child.on('exit', done));
     await start();

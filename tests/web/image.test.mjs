@@ -126,7 +126,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  once('the 3-D picture turns by itself until Esc or a drag, and undo knows nothing of it; lights are for everybody', async () => {
+  later('the 3-D picture turns by itself until Esc or a drag, and undo knows nothing of it; lights are for everybody', async () => {
     const { room, page } = await open();
     await page.getByRole('button', { name: '3-D picture', exact: true }).click();
     const badge = page.locator('.pane-head .badge.turning');

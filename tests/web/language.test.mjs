@@ -204,17 +204,23 @@ describe('the page in another language', { skip: missing && `${missing} is not t
     if (folder) rmSync(folder, { recursive: true, force: true });
   });
 
-  it('goes through a room', async () => {
+  it('opens a room and its help', async () => {
     const page = await open(`modules.html#/rooms/${room}`);
     await full(page);
     await look(page, 'a room');
+    await page.keyboard.press('?');
+    await page.locator('.help-keys li').first().waitFor();
+    await look(page, 'help');
+    await page.context().close();
+  });
+
+  later('goes through a room', async () => {
+    const page = await open(`modules.html#/rooms/${room}`);
+    await full(page);
     const folded = page.locator('.section-head[aria-expanded="false"]');
     while (await folded.count()) await folded.first().click();
     await blocks(page);
     await tabs(page);
-    await page.keyboard.press('?');
-    await look(page, 'help');
-    await page.keyboard.press('Escape');
     await popovers(page, 'a room');
     await page.locator('#picture-1').focus();
     for (const key of ['v', 'm', 'b']) {

@@ -92,10 +92,8 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     assert.equal(await letters(page, 4), 'R L S I');
     for (const view of [1, 2, 3, 4]) assert.ok((await look(page, view)).lit > 0.1, `pane ${view} shows the head`);
     assert.ok(await page.locator('.tag.phantom').isVisible(), 'a phantom is labelled as one');
-    await sleep(400);
     await shoot(page, 'room');
     await page.setViewportSize({ width: 1180, height: 820 });
-    await sleep(500);
     await full(page);
     await shoot(page, 'room-1180x820');
     await page.context().close();

@@ -47,7 +47,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  once('a key is changed in the list, which can be searched; tooltips follow, a reload keeps it', async () => {
+  later('a key is changed in the list, which can be searched; tooltips follow, a reload keeps it', async () => {
     const page = await open();
     const key = (name) => page.locator(`[data-command="${name}"] .help-key`);
     await page.keyboard.press('?');
@@ -94,7 +94,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  once('splitters are dragged, moved by keys, put back and kept; panes get pictures of their new size', async () => {
+  later('splitters are dragged, moved by keys, put back and kept; panes get pictures of their new size', async () => {
     const page = await open();
     const width = (selector) => page.locator(selector).evaluate((element) => Math.round(element.getBoundingClientRect().width));
     const bar = (name) => page.getByRole('separator', { name });

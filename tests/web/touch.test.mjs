@@ -222,7 +222,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  once('every control is large enough for a finger', async () => {
+  later('every control is large enough for a finger', async () => {
     await open();
     const small = () =>
       page.evaluate(() =>

@@ -176,7 +176,7 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     }
   });
 
-  once('a quarter of a roll turns the picture with the pointer', async () => {
+  later('a quarter of a roll turns the picture with the pointer', async () => {
     await open();
     const before = await matrixOf(1);
     await drag(1, 80, 80, { keys: ['Alt'], from: [0, -80], steps: 12 }); // from 12 o'clock to 3
@@ -189,7 +189,7 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     await full(page);
   });
 
-  once('the six sides: what lies there faces the eye', async () => {
+  later('the six sides: what lies there faces the eye', async () => {
     await page.locator('[data-view="1"] .view-all').click();
     const dialog = page.getByRole('dialog', { name: 'Camera' });
     for (const [name, axis, sign] of [

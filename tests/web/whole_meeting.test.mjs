@@ -280,7 +280,7 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     t.diagnostic(
       `all are connected ${Math.round(connectedMs)} ms, and have their pictures ${Math.round(ms)} ms after the daemon is up; entering took ${Math.round(entryMs)} ms`,
     );
-    assert.ok(ms < comesBackMs + 2 * entryMs, `${ms} ms; entering took ${entryMs} ms`); // 0.6 s where nothing else runs
+    assert.ok(ms < comesBackMs + 6 * entryMs, `${ms} ms; entering took ${entryMs} ms`); // 0.6 s where nothing else runs
     const later = await meeting();
     assert.equal(later.revision, before.revision);
     assert.deepEqual(
