@@ -1,0 +1,230 @@
+/* Laying blocks and cells over a volume of materials. */
+#include "core/transport/geometry.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+
+/* Spans in voxels along each axis that hold matter. */
+static bool bounds(const struct geometry *geometry, uint32_t low[3], uint32_t high[3])
+{
+    memcpy(low, geometry->n, 3 * sizeof *low);
+    memset(high, 0, 3 * sizeof *high);
+    bool has_matter = false;
+    const uint8_t *at = geometry->voxels;
+    for (uint32_t k = 0; k < geometry->n[2]; k++)
+        for (uint32_t j = 0; j < geometry->n[1]; j++)
+            for (uint32_t i = 0; i < geometry->n[0]; i++, at++) {
+                if (*at == 0)
+                    continue;
+                has_matter = true;
+                const uint32_t index[3] = { i, j, k };
+                for (int axis = 0; axis < 3; axis++) {
+                    low[axis] = index[axis] < low[axis] ? index[axis] : low[axis];
+                    high[axis] = index[axis] + 1 > high[axis] ? index[axis] + 1 : high[axis];
+                }
+            }
+    return has_matter;
+}
+
+static bool make_frame(struct geometry *geometry, const struct grid *grid, struct error *err)
+{
+    struct vec3 spacing_mm = grid_spacing_mm(grid);
+    for (int axis = 0; axis < 3; axis++) {
+        struct vec3 column = grid->lps_mm_from_ijk.columns[axis];
+        double length_mm = axis == 0 ? spacing_mm.x : axis == 1 ? spacing_mm.y : spacing_mm.z;
+        geometry->axis_lps[axis] = vec3_scale(column, 1 / length_mm);
+        geometry->per_cm[axis] = (float)(10 / length_mm);
+        geometry->n[axis] = grid->size[axis];
+        for (int other = 0; other < axis; other++)
+            if (fabs(vec3_dot(geometry->axis_lps[axis], geometry->axis_lps[other])) > 1e-3)
+                return error_set(err, ERROR_RANGE, "the regions' grid has axes that are not at right angles");
+    }
+    return true;
+}
+
+static bool make_box(struct geometry *geometry, const struct grid *grid, double step_cm, struct error *err)
+{
+    uint32_t low[3], high[3];
+    if (!bounds(geometry, low, high))
+        return error_set(err, ERROR_RANGE, "no voxel holds matter: every region is air");
+    double corner[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double per_cm = (double)geometry->per_cm[axis];
+        corner[axis] = low[axis] / per_cm - GEOMETRY_PAD_CM;
+        double steps = ceil(((high[axis] - low[axis]) / per_cm + 2 * GEOMETRY_PAD_CM) / step_cm);
+        geometry->size_cm[axis] = (float)(steps * step_cm);
+        geometry->shift[axis] = (float)(corner[axis] * per_cm);
+        geometry->n_blocks[axis] = (int32_t)ceil(steps * step_cm / GEOMETRY_BLOCK_CM - 1e-6);
+        corner[axis] = corner[axis] * per_cm - .5; /* as an index */
+    }
+    geometry->corner_lps_mm = affine_point(&grid->lps_mm_from_ijk, (struct vec3){ corner[0], corner[1], corner[2] });
+    return true;
+}
+
+/* Voxels that a span of blocks overlaps along an axis, within the volume; false: none. */
+static bool overlapped(const struct geometry *geometry, int axis, int32_t block, uint32_t *from, uint32_t *to,
+                       bool *is_cut)
+{
+    double per_cm = (double)geometry->per_cm[axis], shift = (double)geometry->shift[axis];
+    double low = floor(block * GEOMETRY_BLOCK_CM * per_cm + shift),
+           high = ceil((block + 1) * GEOMETRY_BLOCK_CM * per_cm + shift);
+    *is_cut |= low < 0 || high > geometry->n[axis];
+    *from = (uint32_t)fmax(low, 0);
+    *to = (uint32_t)fmax(0, fmin(high, geometry->n[axis]));
+    return *from < *to;
+}
+
+static uint8_t block_material(const struct geometry *geometry, const int32_t block[3])
+{
+    uint32_t from[3], to[3];
+    bool is_cut = false;
+    for (int axis = 0; axis < 3; axis++)
+        if (!overlapped(geometry, axis, block[axis], &from[axis], &to[axis], &is_cut))
+            return 0;
+    uint8_t first =
+        is_cut ? 0 : geometry->voxels[((size_t)from[2] * geometry->n[1] + from[1]) * geometry->n[0] + from[0]];
+    for (uint32_t k = from[2]; k < to[2]; k++)
+        for (uint32_t j = from[1]; j < to[1]; j++) {
+            const uint8_t *row = geometry->voxels + ((size_t)k * geometry->n[1] + j) * geometry->n[0];
+            for (uint32_t i = from[0]; i < to[0]; i++)
+                if (row[i] != first)
+                    return GEOMETRY_MIXED;
+        }
+    return first;
+}
+
+static bool make_blocks(struct geometry *geometry, struct error *err)
+{
+    const int32_t *n = geometry->n_blocks;
+    geometry->blocks = mem_array((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 1, (uint64_t)1 << 30, err);
+    if (!geometry->blocks)
+        return false;
+    uint8_t *at = geometry->blocks;
+    for (int32_t k = 0; k < n[2]; k++)
+        for (int32_t j = 0; j < n[1]; j++)
+            for (int32_t i = 0; i < n[0]; i++)
+                *at++ = block_material(geometry, (int32_t[]){ i, j, k });
+    return true;
+}
+
+/* Cells of cell_mm over the whole box. */
+static bool own_cells(struct geometry *geometry, double cell_mm, struct error *err)
+{
+    struct affine map = { 0 };
+    uint32_t size[3];
+    struct vec3 centre = geometry->corner_lps_mm;
+    for (int axis = 0; axis < 3; axis++) {
+        struct vec3 column = vec3_scale(geometry->axis_lps[axis], cell_mm);
+        centre = vec3_add(centre, vec3_scale(column, .5));
+        map.columns[axis] = column;
+        size[axis] = (uint32_t)lround((double)geometry->size_cm[axis] * 10 / cell_mm);
+    }
+    map.origin = centre;
+    return grid_init(&geometry->cells, size, &map, err);
+}
+
+/* How positions become indices of the cells' grid, which has to have the box's axes. */
+static bool aim_cells(struct geometry *geometry, struct error *err)
+{
+    const struct grid *cells = &geometry->cells;
+    struct vec3 origin = affine_point(&cells->ijk_from_lps_mm, geometry->corner_lps_mm);
+    const double at[3] = { origin.x, origin.y, origin.z };
+    for (int axis = 0; axis < 3; axis++) {
+        struct vec3 end = vec3_add(geometry->corner_lps_mm, vec3_scale(geometry->axis_lps[axis], 10));
+        struct vec3 step = vec3_sub(affine_point(&cells->ijk_from_lps_mm, end), origin);
+        const double along[3] = { step.x, step.y, step.z };
+        for (int other = 0; other < 3; other++)
+            if (other != axis && fabs(along[other]) > 1e-3 * fabs(along[axis]))
+                return error_set(err, ERROR_RANGE, "the cells' grid does not have the axes of the regions' grid");
+        geometry->cells_per_cm[axis] = (float)along[axis];
+        geometry->cells_shift[axis] = (float)(at[axis] + .5);
+        geometry->n_cells[axis] = (int32_t)cells->size[axis];
+    }
+    if (grid_n_voxels(cells) > GEOMETRY_MAX_CELLS)
+        return error_set(err, ERROR_LIMIT, "%zu cells, at most %d expected: take larger ones", grid_n_voxels(cells),
+                         GEOMETRY_MAX_CELLS);
+    return true;
+}
+
+/* The span of a voxel along an axis, in cells. */
+static void span(const struct geometry *geometry, int axis, uint32_t voxel, double *low, double *high)
+{
+    double per = (double)geometry->cells_per_cm[axis] / (double)geometry->per_cm[axis];
+    double a = (voxel - (double)geometry->shift[axis]) * per + (double)geometry->cells_shift[axis], b = a + per;
+    *low = fmax(0, fmin(a, b));
+    *high = fmin(geometry->n_cells[axis], fmax(a, b));
+}
+
+/* Adds a voxel's volume to the cells that it overlaps, in their volumes. */
+static void add_voxel(struct geometry *geometry, const uint32_t voxel[3])
+{
+    double low[3], high[3];
+    for (int axis = 0; axis < 3; axis++) {
+        span(geometry, axis, voxel[axis], &low[axis], &high[axis]);
+        if (low[axis] >= high[axis])
+            return;
+    }
+    for (int32_t k = (int32_t)low[2]; k < high[2]; k++)
+        for (int32_t j = (int32_t)low[1]; j < high[1]; j++)
+            for (int32_t i = (int32_t)low[0]; i < high[0]; i++) {
+                double share = (fmin(high[0], i + 1) - fmax(low[0], i)) * (fmin(high[1], j + 1) - fmax(low[1], j)) *
+                               (fmin(high[2], k + 1) - fmax(low[2], k));
+                geometry->matter[((size_t)k * (size_t)geometry->n_cells[1] + (size_t)j) * (size_t)geometry->n_cells[0] +
+                                 (size_t)i] += (float)share;
+            }
+}
+
+static bool measure_matter(struct geometry *geometry, struct error *err)
+{
+    geometry->matter = mem_array(grid_n_voxels(&geometry->cells), sizeof(float), UINT64_MAX, err);
+    if (!geometry->matter)
+        return false;
+    const uint8_t *at = geometry->voxels;
+    for (uint32_t k = 0; k < geometry->n[2]; k++)
+        for (uint32_t j = 0; j < geometry->n[1]; j++)
+            for (uint32_t i = 0; i < geometry->n[0]; i++, at++)
+                if (*at != 0)
+                    add_voxel(geometry, (uint32_t[]){ i, j, k });
+    return true;
+}
+
+bool geometry_init(struct geometry *geometry, const struct grid *grid, const uint8_t *voxels, const struct grid *cells,
+                   double cell_mm, struct error *err)
+{
+    *geometry = (struct geometry){ .voxels = voxels };
+    if (!cells && !(cell_mm >= 1 && cell_mm <= 50))
+        return error_set(err, ERROR_RANGE, "cells of %g mm, 1 to 50 expected", cell_mm);
+    double step_cm = cells ? GEOMETRY_BLOCK_CM : cell_mm / 10;
+    if (!make_frame(geometry, grid, err) || !make_box(geometry, grid, step_cm, err))
+        return false;
+    if (cells)
+        geometry->cells = *cells;
+    else if (!own_cells(geometry, cell_mm, err))
+        return false;
+    if (aim_cells(geometry, err) && make_blocks(geometry, err) && measure_matter(geometry, err))
+        return true;
+    geometry_finish(geometry);
+    return false;
+}
+
+void geometry_finish(struct geometry *geometry)
+{
+    free(geometry->blocks);
+    free(geometry->matter);
+    geometry->blocks = NULL;
+    geometry->matter = NULL;
+}
+
+void geometry_direct(const struct geometry *geometry, struct vec3 direction_lps, double direction[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        direction[axis] = vec3_dot(direction_lps, geometry->axis_lps[axis]);
+}
+
+void geometry_place(const struct geometry *geometry, struct vec3 point_lps_mm, double position_cm[3])
+{
+    geometry_direct(geometry, vec3_scale(vec3_sub(point_lps_mm, geometry->corner_lps_mm), .1), position_cm);
+}

@@ -1,0 +1,82 @@
+#pragma once
+/* Materials in space, and the cells of a tally, in one frame: axes of the voxels, cm, origin in a corner of a box
+ * around the matter. Built once a run, then constant: any thread. */
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/volume/volume.h"
+
+enum {
+    GEOMETRY_MIXED = 255,
+    GEOMETRY_MAX_CELLS = 500000,
+};
+#define GEOMETRY_BLOCK_CM 0.5
+#define GEOMETRY_PAD_CM 2.0 /* of air around the matter: cells at its surface lie within */
+
+struct geometry {
+    uint32_t n[3];
+    const uint8_t *voxels;     /* material by voxel, 0 air; borrowed */
+    float per_cm[3], shift[3]; /* voxel index = position * per_cm + shift */
+    float size_cm[3];          /* of the box */
+    int32_t n_blocks[3];
+    uint8_t *blocks; /* material of a block, or GEOMETRY_MIXED */
+
+    struct grid cells; /* of the tally, in patient coordinates */
+    float cells_per_cm[3], cells_shift[3];
+    int32_t n_cells[3];
+    float *matter; /* share of a cell that is not air */
+
+    struct vec3 axis_lps[3], corner_lps_mm; /* of the box */
+};
+
+/* Takes nothing over; voxels stay the caller's.
+ *
+ *   voxels   [k][j][i] as grid, materials from 1 to n_materials, 0 air
+ *   cells    a grid with the axes of the voxels' grid, either way along each; NULL: cells of cell_mm over the matter
+ *   errors   ERROR_RANGE axes that are not at right angles, or not those of the voxels; no matter at all; ERROR_LIMIT
+ *            more than GEOMETRY_MAX_CELLS cells; ERROR_MEMORY */
+NODISCARD bool geometry_init(struct geometry *geometry, const struct grid *grid, const uint8_t *voxels,
+                             const struct grid *cells, double cell_mm, struct error *err);
+void geometry_finish(struct geometry *geometry);
+
+/* A patient point in the box's frame, and a direction. */
+void geometry_place(const struct geometry *geometry, struct vec3 point_lps_mm, double position_cm[3]);
+void geometry_direct(const struct geometry *geometry, struct vec3 direction_lps, double direction[3]);
+
+/* Material at a position; -1 outside the box. */
+static inline int geometry_material(const struct geometry *geometry, const float position[3])
+{
+    const float per_cm = (float)(1 / GEOMETRY_BLOCK_CM);
+    if (!(position[0] >= 0 && position[1] >= 0 && position[2] >= 0))
+        return -1;
+    int32_t i = (int32_t)(position[0] * per_cm), j = (int32_t)(position[1] * per_cm),
+            k = (int32_t)(position[2] * per_cm);
+    if (i >= geometry->n_blocks[0] || j >= geometry->n_blocks[1] || k >= geometry->n_blocks[2])
+        return -1;
+    uint8_t material =
+        geometry->blocks[((size_t)k * (size_t)geometry->n_blocks[1] + (size_t)j) * (size_t)geometry->n_blocks[0] +
+                         (size_t)i];
+    if (material != GEOMETRY_MIXED)
+        return material;
+    float index[3];
+    for (int axis = 0; axis < 3; axis++) {
+        index[axis] = position[axis] * geometry->per_cm[axis] + geometry->shift[axis];
+        if (!(index[axis] >= 0 && index[axis] < (float)geometry->n[axis]))
+            return 0;
+    }
+    return geometry->voxels[((size_t)(uint32_t)index[2] * geometry->n[1] + (uint32_t)index[1]) * geometry->n[0] +
+                            (uint32_t)index[0]];
+}
+
+/* Cell of the tally at a position; -1 outside. */
+static inline ptrdiff_t geometry_cell(const struct geometry *geometry, const float position[3])
+{
+    int32_t index[3];
+    for (int axis = 0; axis < 3; axis++) {
+        float at = position[axis] * geometry->cells_per_cm[axis] + geometry->cells_shift[axis];
+        if (!(at >= 0 && at < (float)geometry->n_cells[axis]))
+            return -1;
+        index[axis] = (int32_t)at;
+    }
+    return ((ptrdiff_t)index[2] * geometry->n_cells[1] + index[1]) * geometry->n_cells[0] + index[0];
+}

@@ -1,0 +1,63 @@
+#pragma once
+/* Doses of a beam of neutrons in a patient, by Monte Carlo: materials in voxels, a list of particles and a pose to
+ * components on cells, with their statistical errors. Approximate, not for treatment. Knows no plan, files or scene. */
+#include <stdatomic.h>
+
+#include "core/transport/material.h"
+#include "core/transport/phase_space.h"
+#include "core/volume/volume.h"
+
+#define TRANSPORT_MODEL "1" /* changes with whatever changes a number */
+#define TRANSPORT_MAX_HISTORIES UINT64_C(100000000000)
+
+enum transport_quantity {
+    TRANSPORT_BORON,        /* Gy per ppm of boron-10 */
+    TRANSPORT_NITROGEN,     /* Gy, of 2.2 % by weight */
+    TRANSPORT_FAST,         /* Gy, recoiling hydrogen of 10.7 % by weight, neutrons above 9.12 keV */
+    TRANSPORT_GAMMA,        /* Gy, of the beam's photons and of those of captures */
+    TRANSPORT_FAST_FLUENCE, /* 1/cm2 */
+    TRANSPORT_EPITHERMAL_FLUENCE,
+    TRANSPORT_THERMAL_FLUENCE, /* below 0.414 eV */
+    TRANSPORT_N_QUANTITIES
+};
+
+struct transport_input {
+    const struct grid *grid; /* of the voxels */
+    const uint8_t *voxels;   /* [k][j][i]: 0 air, else 1 + index in materials */
+    const struct material *materials;
+    size_t n_materials; /* 1 to MATERIAL_MAX */
+    const struct phase_space *beam;
+    struct vec3 aperture_lps_mm, direction_lps; /* centre of the aperture plane; where the beam goes */
+    uint64_t n_histories, seed;
+    const struct grid *cells; /* NULL: cells of cell_mm over the matter */
+    double cell_mm;
+    bool is_whole_cells; /* fluences over whole cells, air included, as seraMC does; else in what is not air */
+    int n_threads;
+    const atomic_bool *cancel;                     /* NULL: not wanted */
+    void (*progress)(void *context, double share); /* NULL: not wanted; on the caller's thread */
+    void *context;
+};
+
+/* Particles for each that entered, and energy by photons for each MeV that was emitted or entered. The parts of each
+ * group add up to 1, neutrons' within the noise of the game in which weak ones are dropped. */
+struct transport_balance {
+    double missed; /* of the list's neutrons: past the patient */
+    double leaked, absorbed, dropped;
+    double photon_leaked, photon_left;
+};
+struct transport_result {
+    struct volume *values[TRANSPORT_N_QUANTITIES]; /* per unit of the source */
+    struct volume *errors[TRANSPORT_N_QUANTITIES]; /* one standard deviation, in the unit of the values */
+    struct volume *mask; /* U8: 1 where a cell holds enough that is not air (a twentieth), or counts whole */
+    uint64_t n_histories;
+    double seconds;
+    struct transport_balance balance;
+};
+
+/* The whole input is checked before memory is taken.
+ *
+ *   errors   ERROR_RANGE, ERROR_LIMIT: what, where, expected; ERROR_MEMORY; ERROR_CANCELLED within 20 ms
+ *   thread   any; starts n_threads, which are joined before it returns
+ *   returns  equal bytes for equal input, whatever n_threads is */
+NODISCARD bool transport_run(const struct transport_input *input, struct transport_result *result, struct error *err);
+void transport_result_finish(struct transport_result *result);

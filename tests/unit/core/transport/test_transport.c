@@ -1,0 +1,357 @@
+/* Simulations whose answer is known: closed forms, balances, laws of chance. */
+#include "core/transport/transport.h"
+
+#include "core/base/clock.h"
+#include "core/base/parallel.h"
+#include "core/transport/medium.h"
+#include "tests/check.h"
+
+enum { SIDE = 40 }; /* voxels along each axis of the tests' volume */
+
+/* A volume of cubes of 2 mm, a mono-energetic beam, and the input that joins them. */
+struct world_made {
+    struct grid grid;
+    uint8_t voxels[SIDE * SIDE * SIDE];
+    struct material material;
+    struct beam_source source;
+    struct phase_space beam;
+    struct transport_input input;
+};
+
+static struct world_made *make(double radius_cm, double energy_ev, size_t n_list, uint64_t seed)
+{
+    struct world_made *world = calloc(1, sizeof *world);
+    struct error err = { 0 };
+    struct affine map = { { { 2, 0, 0 }, { 0, 2, 0 }, { 0, 0, 2 } }, { 1, 1, 1 } };
+    assert_non_null(world);
+    assert_true(grid_init(&world->grid, (uint32_t[]){ SIDE, SIDE, SIDE }, &map, &err));
+    assert_true(material_of_word("brain", &world->material, &err));
+    world->source = (struct beam_source){ .name = "made", .n_cuts = 1, .radius_cm = radius_cm, .to_aperture_cm = 1 };
+    world->source.neutrons =
+        (struct beam_spectrum){ 1, { energy_ev * 1.0001, energy_ev }, { 1 }, { { 1 } }, 1e6, true };
+    assert_true(phase_space_of_source(&world->beam, &world->source, n_list, 0, seed, 2, &err));
+    world->input = (struct transport_input){ .grid = &world->grid,
+                                             .voxels = world->voxels,
+                                             .materials = &world->material,
+                                             .n_materials = 1,
+                                             .beam = &world->beam,
+                                             .aperture_lps_mm = { 40, 40, -30 },
+                                             .direction_lps = { 0, 0, 1 },
+                                             .n_histories = n_list,
+                                             .seed = seed,
+                                             .cell_mm = 10,
+                                             .n_threads = 2 };
+    return world;
+}
+
+static void drop(struct world_made *world)
+{
+    phase_space_finish(&world->beam);
+    free(world);
+}
+
+static void fill(struct world_made *world, bool (*is_inside)(double x_mm, double y_mm, double z_mm))
+{
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++)
+        world->voxels[i] =
+            !is_inside || is_inside(2 * (i % SIDE) + 1, 2 * (i / SIDE % SIDE) + 1, 2 * (i / SIDE / SIDE) + 1);
+}
+
+/* Nothing but boron: absorbs and does not scatter. */
+static void make_absorber(struct world_made *world, double per_cm_2200)
+{
+    world->material = (struct material){ "boron", 1, { 0 }, per_cm_2200 / (.602214 * 3837) * 10.0129 * 1e6 };
+}
+
+static struct transport_result run(const struct world_made *world)
+{
+    struct transport_result result;
+    struct error err = { 0 };
+    if (!transport_run(&world->input, &result, &err))
+        fail_msg("%s", err.text);
+    return result;
+}
+
+/* Fluence times volume of the layers of cells that begin at each depth: what a tally of path lengths adds up to. */
+static double layer_cm(const struct transport_result *result, enum transport_quantity quantity, uint32_t from_mm)
+{
+    const struct volume *values = result->values[quantity];
+    double sum = 0;
+    for (uint32_t k = 0; k < values->grid.size[2]; k++) {
+        struct vec3 at = affine_point(&values->grid.lps_mm_from_ijk, vec3(0, 0, k));
+        if (fabs(at.z - from_mm - 5) > 1)
+            continue;
+        for (uint32_t j = 0; j < values->grid.size[1]; j++)
+            for (uint32_t i = 0; i < values->grid.size[0]; i++)
+                sum += volume_value(values, i, j, k);
+    }
+    return sum;
+}
+
+static void a_beam_falls_through_a_slab_by_the_exponential_law(void **state)
+{
+    (void)state;
+    double energy_ev = neutron_bin_ev(neutron_bin(1.F)), sigma_cm = .5;
+    struct world_made *world = make(2, energy_ev, 640000, 3);
+    make_absorber(world, sigma_cm / sqrt(.0253 / energy_ev));
+    fill(world, NULL);
+    struct transport_result result = run(world);
+    double through = 1e6 * M_PI * 4;
+    for (uint32_t depth = 0; depth < 8; depth++) { /* 3.5 %: three standard deviations of the deepest */
+        double expected = through * (exp(-sigma_cm * depth) - exp(-sigma_cm * (depth + 1))) / sigma_cm;
+        assert_near(layer_cm(&result, TRANSPORT_EPITHERMAL_FLUENCE, depth * 10), expected, .035);
+    }
+    assert_near(result.balance.leaked, exp(-8 * sigma_cm), .05);
+    assert_close(result.balance.leaked + result.balance.absorbed + result.balance.dropped, 1, 1e-4);
+    transport_result_finish(&result);
+    drop(world);
+}
+
+static bool in_sphere(double x_mm, double y_mm, double z_mm)
+{
+    return pow(x_mm - 40, 2) + pow(y_mm - 40, 2) + pow(z_mm - 40, 2) < 900;
+}
+
+/* A wide beam through a ball: the mean of exp(-sigma chord) over its disk. */
+static void a_ball_lets_through_what_its_chords_do(void **state)
+{
+    (void)state;
+    double energy_ev = neutron_bin_ev(neutron_bin(1.F)), sigma_cm = .3, twice = 2 * sigma_cm * 3;
+    struct world_made *world = make(3, energy_ev, 160000, 5);
+    make_absorber(world, sigma_cm / sqrt(.0253 / energy_ev));
+    fill(world, in_sphere);
+    struct transport_result result = run(world);
+    double expected = 2 * (1 - (1 + twice) * exp(-twice)) / (twice * twice);
+    assert_near(result.balance.leaked, expected, .02); /* cubes of 2 mm for a ball of 30 mm: 1 % */
+    transport_result_finish(&result);
+    drop(world);
+}
+
+/* Each neutron ends in one of three ways, each photon's energy in one of two. */
+static void particles_and_energy_are_neither_lost_nor_made(void **state)
+{
+    (void)state;
+    struct world_made *world = make(3, 1000, 32000, 7);
+    fill(world, NULL);
+    struct transport_result result = run(world);
+    const struct transport_balance *balance = &result.balance;
+    assert_close(balance->leaked + balance->absorbed + balance->dropped, 1, 1e-4);
+    assert_close(balance->dropped, 0, .002);
+    assert_true(balance->absorbed > .05 && balance->absorbed < .6 && balance->missed < 1e-6);
+    assert_close(balance->photon_leaked + balance->photon_left, 1, 1e-3);
+    /* The integral of the photon dose is the energy left, but for what pairs and bremsstrahlung carry off: it counts as
+     * left and not as dose. */
+    double gy_cm3 = 0;
+    const struct volume *gamma = result.values[TRANSPORT_GAMMA];
+    for (size_t i = 0; i < grid_n_voxels(&gamma->grid); i++)
+        gy_cm3 += (double)((float *)gamma->voxels)[i];
+    struct medium *medium = calloc(1, sizeof *medium);
+    assert_non_null(medium);
+    medium_init(medium, &world->material);
+    double emitted_mev = 1e6 * M_PI * 9 * balance->absorbed * medium->emitted_mev;
+    assert_near(gy_cm3 * 1.04 / 1.602177e-10, emitted_mev * balance->photon_left, .06);
+    free(medium);
+    transport_result_finish(&result);
+    drop(world);
+}
+
+static void four_times_the_histories_halve_the_error(void **state)
+{
+    (void)state;
+    struct world_made *world = make(3, 1000, 64000, 9);
+    fill(world, NULL);
+    double mean[2] = { 0 };
+    for (int i = 0; i < 2; i++) {
+        world->input.n_histories = i ? 64000 : 16000;
+        struct transport_result result = run(world);
+        const float *value = result.values[TRANSPORT_THERMAL_FLUENCE]->voxels,
+                    *error = result.errors[TRANSPORT_THERMAL_FLUENCE]->voxels;
+        double n = 0;
+        for (size_t c = 0; c < grid_n_voxels(&result.mask->grid); c++)
+            if (value[c] > .3F * (float)result.values[TRANSPORT_THERMAL_FLUENCE]->high) {
+                mean[i] += (double)(error[c] / value[c]);
+                n++;
+            }
+        mean[i] /= n;
+        transport_result_finish(&result);
+    }
+    assert_near(mean[0] / mean[1], 2, .1);
+    drop(world);
+}
+
+/* (a - b)^2 over the sum of variances, mean over cells that got a third of the maximum. Both variances are of 16 lanes:
+ * the mean of its inverse is 15 / 13 of the inverse of the mean, for the sum of two 30 / 28. */
+static double chi_square(const struct volume *a, const struct volume *a_error, const struct volume *b,
+                         const struct volume *b_error)
+{
+    double sum = 0, n = 0;
+    for (uint32_t k = 0; k < a->grid.size[2]; k++)
+        for (uint32_t j = 0; j < a->grid.size[1]; j++)
+            for (uint32_t i = 0; i < a->grid.size[0]; i++) {
+                double value = volume_value(a, i, j, k), variance = pow(volume_value(a_error, i, j, k), 2);
+                if (value < .3 * a->high)
+                    continue;
+                variance += pow(volume_value(b_error, i, j, k), 2);
+                sum += pow(value - volume_value(b, i, j, k), 2) / variance;
+                n++;
+            }
+    assert_true(n > 50);
+    return sum / n * 28 / 30;
+}
+
+static void another_seed_agrees_within_the_errors(void **state)
+{
+    (void)state;
+    double sum = 0;
+    enum { PAIRS = 4 };
+    for (uint64_t pair = 0; pair < PAIRS; pair++) {
+        struct transport_result results[2];
+        for (uint64_t i = 0; i < 2; i++) {
+            struct world_made *world = make(3, 1000, 32000, 100 + 2 * pair + i);
+            world->input.cell_mm = 5;
+            fill(world, NULL);
+            results[i] = run(world);
+            drop(world);
+        }
+        sum += chi_square(results[0].values[TRANSPORT_THERMAL_FLUENCE], results[0].errors[TRANSPORT_THERMAL_FLUENCE],
+                          results[1].values[TRANSPORT_THERMAL_FLUENCE], results[1].errors[TRANSPORT_THERMAL_FLUENCE]);
+        transport_result_finish(&results[0]);
+        transport_result_finish(&results[1]);
+    }
+    assert_close(sum / PAIRS, 1, .1);
+}
+
+static void the_number_of_threads_changes_no_byte(void **state)
+{
+    (void)state;
+    struct world_made *world = make(3, 1000, 8000, 11);
+    fill(world, in_sphere);
+    struct transport_result first = run(world);
+    for (int threads = 1; threads <= 7; threads += 3) {
+        world->input.n_threads = threads;
+        struct transport_result other = run(world);
+        for (int i = 0; i < TRANSPORT_N_QUANTITIES; i++) {
+            size_t size = grid_n_voxels(&first.mask->grid) * sizeof(float);
+            assert_memory_equal(first.values[i]->voxels, other.values[i]->voxels, size);
+            assert_memory_equal(first.errors[i]->voxels, other.errors[i]->voxels, size);
+        }
+        transport_result_finish(&other);
+    }
+    transport_result_finish(&first);
+    drop(world);
+}
+
+static bool in_odd_shape(double x_mm, double y_mm, double z_mm)
+{
+    return in_sphere(x_mm, y_mm, z_mm) && !(x_mm > 44 && y_mm > 30 && z_mm < 50);
+}
+
+/* Head and beam turned together, the voxels also stored in another order of axes: the same doses at the same places. */
+static void head_and_beam_turned_together_give_the_same(void **state)
+{
+    (void)state;
+    struct world_made *world = make(2, 1000, 64000, 13);
+    fill(world, in_odd_shape);
+    struct transport_result straight = run(world);
+    drop(world);
+    world = make(2, 1000, 64000, 14);
+    fill(world, in_odd_shape);
+    struct error err = { 0 };
+    double c = cos(.6), s = sin(.6);
+    struct affine turned = { { { 2 * c, 2 * s, 0 }, { -2 * s, 2 * c, 0 }, { 0, 0, 2 } }, { 50, -20, 7 } };
+    assert_true(grid_init(&world->grid, (uint32_t[]){ SIDE, SIDE, SIDE }, &turned, &err));
+    world->input.aperture_lps_mm = affine_point(&turned, vec3(19.5, 19.5, -15.5));
+    world->input.direction_lps = vec3_normalize(affine_vector(&turned, vec3(0, 0, 1)));
+    struct transport_result result = run(world);
+    for (int i = TRANSPORT_BORON; i <= TRANSPORT_THERMAL_FLUENCE; i += TRANSPORT_THERMAL_FLUENCE)
+        assert_close(chi_square(straight.values[i], straight.errors[i], result.values[i], result.errors[i]), 1, .35);
+    transport_result_finish(&result);
+    transport_result_finish(&straight);
+    drop(world);
+}
+
+struct cancelling {
+    atomic_bool cancel;
+    int64_t cancelled_us;
+};
+static void cancel_at_a_tenth(void *context, double share)
+{
+    struct cancelling *cancelling = context;
+    if (share > .1 && !atomic_exchange(&cancelling->cancel, true))
+        cancelling->cancelled_us = clock_now_us();
+}
+
+static void a_cancelled_run_stops_and_leaves_nothing(void **state)
+{
+    (void)state;
+    struct cancelling cancelling = { 0 };
+    struct world_made *world = make(3, 1000, 8000, 15);
+    fill(world, NULL);
+    world->input.n_histories = 40000000;
+    world->input.cancel = &cancelling.cancel;
+    world->input.progress = cancel_at_a_tenth;
+    world->input.context = &cancelling;
+    world->input.n_histories = 400000;
+    struct transport_result result;
+    struct error err = { 0 };
+    double before_s = cpu_s();
+    assert_false(transport_run(&world->input, &result, &err));
+    assert_int_equal(err.code, ERROR_CANCELLED);
+    assert_null(result.mask);
+    assert_true(cancelling.cancelled_us > 0);
+    assert_true(cpu_s() - before_s < 20); /* a tenth of the work and not all of it; how soon, make bench measures */
+    drop(world);
+}
+
+static void input_beyond_its_limits_is_refused_with_what_was_expected(void **state)
+{
+    (void)state;
+    struct world_made *world = make(3, 1000, 1600, 17);
+    struct transport_result result;
+    struct error err = { 0 };
+    assert_false(transport_run(&world->input, &result, &err));
+    assert_string_equal(err.text, "no voxel holds matter: every region is air");
+    fill(world, NULL);
+    world->voxels[5] = 2;
+    assert_false(transport_run(&world->input, &result, &err));
+    assert_string_equal(err.text, "voxel 5 has material 2, at most 1 expected");
+    world->voxels[5] = 1;
+    struct transport_input good = world->input;
+    world->input.n_histories = 3;
+    assert_false(transport_run(&world->input, &result, &err));
+    assert_non_null(strstr(err.text, "3 histories, 16 to"));
+    world->input = good;
+    world->input.direction_lps = vec3(0, 0, 2);
+    assert_false(transport_run(&world->input, &result, &err));
+    world->input = good;
+    world->input.cell_mm = .5;
+    assert_false(transport_run(&world->input, &result, &err));
+    assert_string_equal(err.text, "cells of 0.5 mm, 1 to 50 expected");
+    world->input.cell_mm = 1;
+    assert_false(transport_run(&world->input, &result, &err));
+    assert_int_equal(err.code, ERROR_LIMIT);
+    world->input = good;
+    struct grid cells = world->grid;
+    struct affine oblique = { { { 4, 4, 0 }, { -4, 4, 0 }, { 0, 0, 5 } }, { 0, 0, 0 } };
+    assert_true(grid_init(&cells, (uint32_t[]){ 9, 9, 9 }, &oblique, &err));
+    world->input.cells = &cells;
+    assert_false(transport_run(&world->input, &result, &err));
+    assert_string_equal(err.text, "the cells' grid does not have the axes of the regions' grid");
+    drop(world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_beam_falls_through_a_slab_by_the_exponential_law),
+        cmocka_unit_test(a_ball_lets_through_what_its_chords_do),
+        cmocka_unit_test(particles_and_energy_are_neither_lost_nor_made),
+        cmocka_unit_test(four_times_the_histories_halve_the_error),
+        cmocka_unit_test(another_seed_agrees_within_the_errors),
+        cmocka_unit_test(the_number_of_threads_changes_no_byte),
+        cmocka_unit_test(head_and_beam_turned_together_give_the_same),
+        cmocka_unit_test(a_cancelled_run_stops_and_leaves_nothing),
+        cmocka_unit_test(input_beyond_its_limits_is_refused_with_what_was_expected),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
