@@ -10,8 +10,11 @@
 #include "core/scene/axes.h"
 #include "core/volume/ellipse.h"
 
-enum { ELLIPSE_LINES = 72 };
-static const uint32_t measure_rgb = 0xffd84d;
+enum { ELLIPSE_LINES = 72, CROSSHAIR_LINES = 4 };
+static const uint32_t measure_rgb = 0xffd84d, crosshair_rgb = 0xc9ced6;
+/* Free parts of the crosshair: around its middle, of the picture's shorter side; at the edges, where letters stand, of
+ * width and height. */
+static const double crosshair_gap = 0.025, crosshair_margin = 0.06;
 
 struct marks {
     struct annotations *annotations;
@@ -239,7 +242,7 @@ bool marks_describe(struct annotations *annotations, const struct snapshot *snap
     for (size_t i = 0; i < scene->n_measures; i++)
         n_lines += scene->measures[i].value.n_points + ELLIPSE_LINES;
     annotations->n_lines = annotations->n_labels = 0;
-    annotations->lines = mem_array(n_lines, sizeof *annotations->lines, UINT64_MAX, err);
+    annotations->lines = mem_array(n_lines + CROSSHAIR_LINES, sizeof *annotations->lines, UINT64_MAX, err);
     annotations->labels = annotations->lines
                               ? mem_array(scene->n_measures + AXES_N_ENDS, sizeof *annotations->labels, UINT64_MAX, err)
                               : NULL;
@@ -249,4 +252,61 @@ bool marks_describe(struct annotations *annotations, const struct snapshot *snap
     for (size_t i = 0; i < scene->n_measures; i++)
         add_measure(&marks, &scene->measures[i].value);
     return true;
+}
+
+/* ---- crosshair -------------------------------------------------------------------------------------------------- */
+
+static void add_arm(const struct marks *marks, const double at[2], const double along[2], double from, double to)
+{
+    struct annotation_line line = { .rgb = crosshair_rgb };
+    if (!(from < to))
+        return;
+    for (int side = 0; side < 2; side++) {
+        line.from[side] = at[side] + from * along[side];
+        line.to[side] = at[side] + to * along[side];
+    }
+    marks->annotations->lines[marks->annotations->n_lines++] = line;
+}
+
+/* Two arms along the line from `at` towards `to`, as far as the margins of the picture. */
+static void add_arms(const struct marks *marks, const double at[2], const double to[2])
+{
+    const int *size_px = marks->snapshot->view.size_px;
+    const double along[2] = { to[0] - at[0], to[1] - at[1] },
+                 length_px = hypot(along[0] * size_px[0], along[1] * size_px[1]),
+                 gap = crosshair_gap * fmin(size_px[0], size_px[1]) / length_px;
+    double first = -INFINITY, last = INFINITY;
+    if (!(length_px > 0) || !isfinite(at[0] + at[1] + length_px))
+        return;
+    for (int side = 0; side < 2; side++) {
+        const double low = (crosshair_margin - at[side]) / along[side],
+                     high = (1 - crosshair_margin - at[side]) / along[side];
+        if (fabs(along[side]) * size_px[side] > 1e-6 * length_px) {
+            first = fmax(first, fmin(low, high));
+            last = fmin(last, fmax(low, high));
+        } else if (at[side] < crosshair_margin || at[side] > 1 - crosshair_margin) {
+            return;
+        }
+    }
+    add_arm(marks, at, along, first, fmin(last, -gap));
+    add_arm(marks, at, along, fmax(first, gap), last);
+}
+
+void marks_add_crosshair(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    static const struct vec3 axes[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    const struct scene_slices *slices = &snapshot->scene.image.slices;
+    const struct vec3 point =
+        vec3(slices->sagittal.position_mm, slices->coronal.position_mm, slices->axial.position_mm);
+    const enum scene_kind kind = snapshot->view.kind;
+    const int across = kind == SCENE_KIND_SAGITTAL ? 0 : kind == SCENE_KIND_CORONAL ? 1 : 2;
+    struct camera camera;
+    double at[2], to[2];
+    if (kind != SCENE_KIND_SAGITTAL && kind != SCENE_KIND_CORONAL && kind != SCENE_KIND_AXIAL)
+        return;
+    camera_resolve(snapshot, &camera);
+    const struct marks marks = { annotations, snapshot, &camera };
+    for (int axis = 0; axis < 3; axis++)
+        if (axis != across && place_of(&marks, point, at) && place_of(&marks, vec3_add(point, axes[axis]), to))
+            add_arms(&marks, at, to);
 }

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "core/annotate/marks.h"
 #include "core/base/log.h"
 
 void pipeline_annotation_destroy(struct pipeline_annotation *annotation)
@@ -36,6 +37,8 @@ static bool annotate(struct picture *picture, struct error *err)
                              err)) {
         if (annotation->is_named)
             annotations_name_patient(&annotations, picture->request.snapshot->plan);
+        if (annotation->has_crosshair)
+            marks_add_crosshair(&annotations, picture->request.snapshot);
         annotations.has_no_caption = annotation->is_caption_apart;
         annotated = annotate_image(picture->image, &annotations, err);
     }

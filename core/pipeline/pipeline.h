@@ -17,6 +17,7 @@ struct pipeline_annotation {
     char *text;            /* owned: kept in a PNG; JPEGs carry none */
     bool is_caption_apart; /* letters and scale bar alone */
     bool is_named;         /* the caption has the patient in full */
+    bool has_crosshair;    /* on a slice */
 };
 void pipeline_annotation_destroy(struct pipeline_annotation *annotation);
 

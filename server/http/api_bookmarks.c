@@ -86,7 +86,8 @@ void api_room_bookmark_picture(struct api *api, struct call *call)
     (void)snprintf(shared_as, sizeof shared_as, "bookmark %.63s %.63s %u", call->ids[0], call->ids[1], version);
     if (view)
         api_picture_request(api, call, room_plan_id(room), cJSON_GetObjectItemCaseSensitive(opened, "scene"), NULL,
-                            NULL, view, "jpeg", PICTURE_QUALITY, API_CAPTION_NONE, shared_as);
+                            NULL, view, "jpeg", PICTURE_QUALITY, (struct api_marking){ .has_caption = false },
+                            shared_as);
     else
         call_answer_problem(call, &problem);
     cJSON_Delete(view);

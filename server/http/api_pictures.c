@@ -133,7 +133,7 @@ static void picture_came(void *context, struct packet *answer, const struct prob
 
 void api_picture_request(struct api *api, struct call *call, const char *plan_id, const cJSON *scene,
                          const cJSON *acceptances, const uint32_t *revision, const cJSON *view, const char *format,
-                         double quality, enum api_caption caption, const char *shared_as)
+                         double quality, struct api_marking marking, const char *shared_as)
 {
     struct problem problem;
     bool is_jpeg = format && strcmp(format, "jpeg") == 0;
@@ -167,8 +167,9 @@ void api_picture_request(struct api *api, struct call *call, const char *plan_id
     packet.render.codec = is_jpeg ? PACKET_CODEC_JPEG : PACKET_CODEC_PNG;
     packet.render.full_color = true;
     packet.render.still = true;
-    packet.render.annotations = caption != API_CAPTION_NONE;
-    packet.render.named = caption == API_CAPTION_NAMED;
+    packet.render.annotations = marking.has_caption;
+    packet.render.named = marking.is_named;
+    packet.render.crosshair = marking.has_crosshair;
     (void)fleet_request(net_fleet(api->net), plan_id, &packet, picture_came, picture);
 }
 

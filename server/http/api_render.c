@@ -141,7 +141,7 @@ static void render_when_ready(void *context, struct packet *answer, const struct
     audit_acceptances(api, call, request->plan_id, accepted);
     api_picture_request(api, call, request->plan_id, shown, acceptances, NULL, view, json_text(request->body, "format"),
                         json_number(request->body, "quality", 92),
-                        json_flag(request->body, "annotations", false) ? API_CAPTION_MASKED : API_CAPTION_NONE, NULL);
+                        (struct api_marking){ .has_caption = json_flag(request->body, "annotations", false) }, NULL);
     goto done;
 refuse:
     call_answer_problem(call, &problem);

@@ -352,17 +352,20 @@ static bool query_flag(const struct call *call, const char *name, bool *flag, st
 }
 
 /* False with problem: the call is wrong, or has no right to the patient's name. */
-static bool read_caption(const struct api *api, const struct call *call, const struct room *room,
-                         enum api_caption *caption, struct problem *problem)
+static bool read_marking(const struct api *api, const struct call *call, const struct room *room,
+                         struct api_marking *marking, struct problem *problem)
 {
-    bool is_annotated, is_named;
-    if (!query_flag(call, "annotations", &is_annotated, problem) || !query_flag(call, "identity", &is_named, problem))
+    if (!query_flag(call, "annotations", &marking->has_caption, problem) ||
+        !query_flag(call, "identity", &marking->is_named, problem) ||
+        !query_flag(call, "crosshair", &marking->has_crosshair, problem))
         return false;
-    *caption = !is_annotated ? API_CAPTION_NONE : is_named ? API_CAPTION_NAMED : API_CAPTION_MASKED;
-    if (is_named && !is_annotated)
+    if (marking->has_crosshair && !marking->has_caption)
+        return problem_set(problem, PROBLEM_VALIDATION, "/crosshair", "annotations",
+                           "the crosshair belongs to letters and caption: annotations has to be true");
+    if (marking->is_named && !marking->has_caption)
         return problem_set(problem, PROBLEM_VALIDATION, "/identity", "annotations",
                            "the patient is named in the caption: annotations has to be true");
-    return !is_named || api_may_name(api, call, room_plan_id(room), problem);
+    return !marking->is_named || api_may_name(api, call, room_plan_id(room), problem);
 }
 
 void api_room_snapshot(struct api *api, struct call *call)
@@ -378,8 +381,8 @@ void api_room_snapshot(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    enum api_caption caption;
-    if (!read_caption(api, call, room, &caption, &problem)) {
+    struct api_marking marking;
+    if (!read_marking(api, call, room, &marking, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
@@ -397,14 +400,14 @@ void api_room_snapshot(struct api *api, struct call *call)
     cJSON *view = api_view_parameter(call);
     if (!view)
         return;
-    if (!api_audit_export(api, call, caption == API_CAPTION_NAMED ? "snapshot-named" : "snapshot")) {
+    if (!api_audit_export(api, call, marking.is_named ? "snapshot-named" : "snapshot")) {
         cJSON_Delete(view);
         return;
     }
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
         api_picture_request(api, call, plan_id, shown, room_acceptances(room), &revision, view,
-                            call_query(call, "format"), quality, caption, NULL);
+                            call_query(call, "format"), quality, marking, NULL);
     } else {
         problem_below(&problem, "/view");
         call_answer_problem(call, &problem);

@@ -342,6 +342,7 @@ static void ask_picture(struct gathering *gathering, int place, const struct pac
         packet.render.shown.scene = scene;
     packet.render.quality = KEEP_FIGURE_QUALITY;
     packet.render.full_color = packet.render.still = packet.render.annotations = packet.render.caption_apart = true;
+    packet.render.crosshair = true;
     (void)snprintf(packet.render.source, sizeof packet.render.source, "%s/record", room_id(gathering->entry->room));
     ask(gathering, place, &packet);
     cJSON_Delete(scene);

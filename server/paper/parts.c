@@ -59,6 +59,27 @@ static void add_part(cJSON *list, const char *rgb, cJSON *text)
     json_append(list, part);
 }
 
+static bool is_slice(const cJSON *figure)
+{
+    const char *kind = text_of(figure, "kind");
+    return strcmp(kind, "axial") == 0 || strcmp(kind, "sagittal") == 0 || strcmp(kind, "coronal") == 0;
+}
+
+static const char *written_crosshair(const struct paper *paper, char text[PAPER_PLACE])
+{
+    static const char *const names[3] = { "sagittal", "coronal", "axial" }; /* at L, P, S */
+    const cJSON *slices = get(get(paper->scene, "image"), "slices");
+    cJSON *point = cJSON_CreateArray();
+    for (int axis = 0; axis < 3; axis++) {
+        const cJSON *position = get(get(slices, names[axis]), "position_mm");
+        if (cJSON_IsNumber(position))
+            json_append(point, cJSON_CreateNumber(position->valuedouble));
+    }
+    (void)written_place(point, text);
+    cJSON_Delete(point);
+    return text;
+}
+
 /* The words of a caption: row "pane" names plane and place and is the title; the rest stands below. What is the same as
  * in figure 1 is not said again. */
 static void add_caption(const struct paper *paper, const cJSON *figure, cJSON *to)
@@ -68,6 +89,7 @@ static void add_caption(const struct paper *paper, const cJSON *figure, cJSON *t
     const cJSON *item, *first = cJSON_GetArrayItem(get(paper->kept, "figures"), 0);
     const char *mover = mover_of(paper, figure);
     int n_pane = 0, n_same = 0;
+    char place[PAPER_PLACE];
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const bool is_same = figure != first && i < 3 && is_same_row(figure, first, rows[i]);
         n_same += is_same;
@@ -82,6 +104,8 @@ static void add_caption(const struct paper *paper, const cJSON *figure, cJSON *t
         if (strcmp(text_of(item, "row"), "pane") == 0 && n_pane++ >= 2)
             add_part(list, "", written(text_of(item, "text")));
     }
+    if (is_slice(figure) && written_crosshair(paper, place)[0])
+        add_part(list, "", written_format("crosshair %s", place));
     if (n_same)
         add_part(list, "", written("dose, levels and regions not named here as in figure 1"));
     if (mover[0])
@@ -140,38 +164,88 @@ static void add_figures(struct paper *paper)
 
 /* ---- lists -------------------------------------------------------------------------------------------------------- */
 
+/* Entries of the page's checklist (web/js/features/record): for those that nobody marked, whose words no item has. */
+static const char *const entries[][2] = {
+    { "identity", "Plan, patient position and treated side are those of the prescription" },
+    { "registration", "Images are registered, and oriented as the patient lies" },
+    { "regions", "Targets and organs at risk are complete and rightly named" },
+    { "boron", "Boron concentrations, ratios and biological weights are as prescribed" },
+    { "dose", "Dose is plausible by component and in total; unit and fraction are clear" },
+    { "constraints", "Constraints of organs at risk and the coverage of the target are met" },
+    { "beam", "Beam, aperture, gap and irradiation time are as planned" },
+    { "positioning", "The position can be set up, and checked at the beam" },
+    { "deviations", "Deviations from the protocol are named and justified" },
+};
+enum { N_ENTRIES = sizeof entries / sizeof entries[0] };
+
+/* -1: an entry that a member added. */
+static int entry_of(const cJSON *item)
+{
+    const char *id = text_of(item, text_of(item, "entry")[0] ? "entry" : "id");
+    for (int i = 0; i < N_ENTRIES; i++)
+        if (strcmp(entries[i][0], id) == 0)
+            return i;
+    return -1;
+}
+
+static void add_mark(const struct paper *paper, cJSON *table, const cJSON *item)
+{
+    const char *state = text_of(item, "state");
+    const bool is_ok = strcmp(state, "ok") == 0, is_issue = strcmp(state, "issue") == 0;
+    cJSON *row = table_row(table);
+    char time[PAPER_TIME];
+    row_add(row, written(text_of(item, "text")), "");
+    row_add(row,
+            written(is_ok      ? "\xe2\x9c\x93 OK"
+                    : is_issue ? "! Issue"
+                               : "Open"),
+            is_ok      ? "ok"
+            : is_issue ? "err"
+                       : "");
+    row_add(row, written(text_of(item, "comment")), "");
+    row_add(row,
+            written_format("%.300s, %s", text_of(item, "changed_name"),
+                           written_time(paper, json_number(item, "changed_ms", NAN), time)),
+            "");
+}
+
+/* Adds the marks of an entry under a revision. False: it has none. */
+static bool add_marks(const struct paper *paper, cJSON *table, int entry, const char *revision)
+{
+    const cJSON *item;
+    bool has_mark = false;
+    cJSON_ArrayForEach(item, get(paper->record, "checklist"))
+    {
+        if (entry_of(item) == entry && strcmp(text_of(item, "plan_revision"), revision) == 0) {
+            add_mark(paper, table, item);
+            has_mark = true;
+        }
+    }
+    return has_mark;
+}
+
+static void add_unmarked(cJSON *table, const char *words)
+{
+    cJSON *row = table_row(table);
+    row_add(row, written(words), "");
+    row_add(row, written("not marked"), "warn");
+    row_add(row, written(""), "");
+    row_add(row, written(""), "");
+}
+
 static void add_checklist(struct paper *paper)
 {
     static const struct paper_column columns[] = {
-        { "Entry", 40, 'l' }, { "State", 10, 'l' }, { "What is wrong", 26, 'l' }, { "By", 24, 'l' }
+        { "Entry", 40, 'l' }, { "State", 12, 'l' }, { "What is wrong", 25, 'l' }, { "By", 23, 'l' }
     };
-    const cJSON *item;
-    char time[PAPER_TIME];
     const char *revision = text_of(get(paper->source->item, "body"), "plan_revision");
-    block_heading(paper, "Checklist", "entries that nobody marked are not listed");
+    block_heading(paper, "Checklist", "");
     cJSON *table = block_table(paper, columns, 4);
-    cJSON_ArrayForEach(item, get(paper->record, "checklist"))
-    {
-        const char *state = text_of(item, "state");
-        if (strcmp(text_of(item, "plan_revision"), revision) != 0)
-            continue;
-        cJSON *row = table_row(table);
-        const bool is_ok = strcmp(state, "ok") == 0, is_issue = strcmp(state, "issue") == 0;
-        row_add(row, written(text_of(item, "text")), "");
-        row_add(row,
-                written(is_ok      ? "\xe2\x9c\x93 OK"
-                        : is_issue ? "! Issue"
-                                   : "Open"),
-                is_ok      ? "ok"
-                : is_issue ? "err"
-                           : "");
-        row_add(row, written(text_of(item, "comment")), "");
-        row_add(row,
-                written_format("%.300s, %s", text_of(item, "changed_name"),
-                               written_time(paper, json_number(item, "changed_ms", NAN), time)),
-                "");
-    }
-    table_end(paper, table, "No entry was marked.");
+    for (int entry = 0; cJSON_IsArray(get(paper->record, "checklist")) && entry < N_ENTRIES; entry++)
+        if (!add_marks(paper, table, entry, revision))
+            add_unmarked(table, entries[entry][1]);
+    (void)add_marks(paper, table, -1, revision);
+    table_end(paper, table, "It was not kept with this decision.");
 }
 
 static void add_present(struct paper *paper)

@@ -190,6 +190,7 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
     if (drawn.annotation) {
         drawn.annotation->is_caption_apart = render->caption_apart;
         drawn.annotation->is_named = render->named;
+        drawn.annotation->has_crosshair = render->crosshair;
     }
     request->is_caption_apart = render->annotations && render->caption_apart;
     request->scene_revision = scene_revision;

@@ -7,6 +7,7 @@ import { copyFileSync, cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync 
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { checklist } from '../../web/js/features/record/checklist.js';
 import { bin, call, openPlan, startDaemon, until } from './daemon.mjs';
 import { putWhole } from './made_dicom.mjs';
 import { Client } from './ws_client.mjs';
@@ -62,7 +63,7 @@ async function picture(url) {
   return { status: answer.status, type: answer.headers.get('content-type'), bytes: Buffer.from(await answer.arrayBuffer()) };
 }
 const limits = {
-  image: { slices: { axial: { position_mm: 10 } } },
+  image: { slices: { axial: { position_mm: 10 }, sagittal: { position_mm: 5 }, coronal: { position_mm: -3 } } },
   dose: { wash: { visible: true }, lines: { visible: true } },
   constraints: { 'limit-1': { region: 'target', quantity: 'weighted', metric: 'mean', side: 'at-least', limit: 1 } },
 };
@@ -135,6 +136,12 @@ const textsOf = ({ blocks }) => JSON.stringify(blocks);
 test('the paper is the same after weights, scene, name of the plan and time zone have changed, but for when it was printed', async () => {
   const { room, client } = await enter('third', limits);
   await put(client, 'note', { text: 'over \u202Eexe.gnp\u202C <b>bold</b> & "so"', anchor: { point_mm: [-1.5, 2, 30] } });
+  await put(client, 'check', {
+    entry: 'beam',
+    text: 'Beam, aperture, gap and irradiation time are as planned',
+    state: 'issue',
+    comment: 'gap',
+  });
   const item = await put(client, 'decision', { decision: 'accept-with-changes', text: 'Less gap' }),
     before = await paper(item.id);
   assert.match(before.printed, /^printed \d+ \w+ \d{4}, \d\d:\d\d:\d\d EET \(UTC\+2\)$/);
@@ -158,6 +165,18 @@ test('the paper is the same after weights, scene, name of the plan and time zone
       ['half', [1, 2]],
       ['whole', [3]],
     ],
+  );
+  const { blocks } = before.rest,
+    { rows } = blocks[blocks.findIndex(({ type, text }) => type === 'heading' && text === 'Checklist') + 1];
+  assert.deepEqual(
+    rows.map(([entry, state, wrong]) => [entry.text, state.text, wrong.text]),
+    checklist.map(([id, text]) => [text, ...(id === 'beam' ? ['! Issue', 'gap'] : ['not marked', ''])]),
+    'every entry of the page, in its order, what nobody marked as well',
+  );
+  const captions = blocks.flatMap(({ figures = [] }) => figures.map(({ caption }) => caption.map(({ text }) => text)));
+  assert.deepEqual(
+    captions.map((texts) => texts.filter((text) => text.startsWith('crosshair '))),
+    [...Array(3).fill(['crosshair L 5.0, A 3.0, S 10.0 mm']), []],
   );
   await change(room, client, {
     dose: { quantity: 'boron', weights: { target: { boron_ratio: 9 } }, blood_ppm: 30 },

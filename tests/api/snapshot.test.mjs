@@ -113,6 +113,35 @@ test('an annotated picture is the plain one with letters and scale on it, and a 
   }
 });
 
+test('the crosshair is drawn on a slice where it was asked for, in no other picture, and with a caption alone', async () => {
+  const slice = { kind: 'coronal', size_px: [400, 300] };
+  const [bare, crossed] = [await snapshot(slice, '&annotations=true'), await snapshot(slice, '&annotations=true&crosshair=true')].map(
+    readPng,
+  );
+  let [rows, columns] = [0, 0]; // over most of the picture, with the dark rim of the lines
+  const isDrawn = (x, y) => String(bare.at(x, y)) !== String(crossed.at(x, y));
+  for (let y = 0; y < 300; y++) rows += Array.from({ length: 400 }, (_, x) => isDrawn(x, y)).filter(Boolean).length > 300;
+  for (let x = 0; x < 400; x++) columns += Array.from({ length: 300 }, (_, y) => isDrawn(x, y)).filter(Boolean).length > 220;
+  assert.ok(rows >= 2 && rows <= 5 && columns >= 2 && columns <= 5, `${rows} rows, ${columns} columns`);
+  const space = { size_px: [400, 300] };
+  assert.equal(
+    nDifferent(
+      ...[await snapshot(space, '&annotations=true'), await snapshot(space, '&annotations=true&crosshair=true')].map(readPng),
+      300,
+    ),
+    0,
+  );
+  for (const [more, code] of [
+    ['&crosshair=true', 'annotations'],
+    ['&annotations=true&crosshair=yes', 'type'],
+  ])
+    assert.deepEqual(await call(query(slice, more)).then(({ status, json }) => [status, json.pointer, json.code]), [
+      422,
+      '/crosshair',
+      code,
+    ]);
+});
+
 test('perspective has no scale bar', async () => {
   const view = { size_px: [400, 300] };
   const parallel = { ...view, camera: { projection: 'parallel' } };

@@ -180,13 +180,19 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     for (const text of pages)
       assert.match(
         text,
-        /Phantom: modified Snyder head · printed \d{4}-\d\d-\d\d \d\d:\d\d UTC · revision 1For research and plan review\. Not a medical device/,
+        /PHANTOM · Phantom: modified Snyder head · printed \d{4}-\d\d-\d\d \d\d:\d\d UTC[+−]\d+(:\d\d)? · revision 1For research and plan review\. Not a medical device/,
       );
     const whole = pages.join('\n');
     pages.forEach((text, i) => assert.ok(text.startsWith(`Page ${i + 1} of ${pages.length}`), text));
     assert.match(pages[0], /^Page 1 of \dPhantom: modified Snyder headPlan/);
     assert.match(whole, /Figure 1\.\s*Tumour in the slice of its middle/);
     assert.match(whole, /Figure 2\./);
+    assert.match(whole, /PatientPHANTOM.*Draftno draft beam stands/s);
+    assert.match(
+      whole,
+      /Basis of the dose.*unitGy\(w\) per minute at 1e10 n\/cm²\/s.*boron in blood\s*\(ppm\)15.*CBE 3\.8.*100 %[\d.]+ Gy/s,
+    );
+    assert.match(whole, /898\u202f260/, 'no number is broken over two lines');
     const { sagittal, coronal, axial } = (await world.scene(room)).image.slices;
     const [left, posterior, superior] = [sagittal, coronal, axial].map(({ position_mm: mm }) => mm.toFixed(1));
     assert.ok(Math.min(left, posterior, superior) > 0, 'so that the letters are the same: L, P, S');

@@ -89,10 +89,10 @@ export function makeApi(fetch, base = '/api/v1') {
       call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
     surfaceUrl: (plan, region, query) => `${base}/plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`,
     /** The annotated picture as a PNG. @returns {Promise<Blob>} */
-    snapshot: (room, view, isNamed = false) =>
+    snapshot: (room, view, isNamed = false, more = '') =>
       call(
         'GET',
-        `rooms/${id(room.id)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true${isNamed ? '&identity=true' : ''}`,
+        `rooms/${id(room.id)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true${isNamed ? '&identity=true' : ''}${more}`,
         {
           isPicture: true,
           more: ofMember(room.identity),

@@ -1,5 +1,6 @@
 /* Measures and patient axes on annotated pictures: where they are, and what they say. */
 #include "core/annotate/describe.h"
+#include "core/annotate/marks.h"
 #include "core/scene/axes.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
@@ -54,7 +55,7 @@ static struct scene scene_of(const struct plan *plan)
 }
 
 /* 4 pixels per mm, the origin in the middle: 3-D from the front, or a slice pane. */
-static struct annotations describe(struct plan *plan, struct scene scene, enum scene_kind kind)
+static struct annotations describe_with(struct plan *plan, struct scene scene, enum scene_kind kind, bool is_crossed)
 {
     struct view view = view_default;
     struct error err = { 0 };
@@ -72,8 +73,20 @@ static struct annotations describe(struct plan *plan, struct scene scene, enum s
     assert_string_equal(err.text, "");
     struct annotations annotations;
     assert_true(annotations_describe(&annotations, snapshot, WIDTH, "", &err));
+    if (is_crossed)
+        marks_add_crosshair(&annotations, snapshot);
     snapshot_unref(snapshot);
     return annotations;
+}
+
+static struct annotations describe(struct plan *plan, struct scene scene, enum scene_kind kind)
+{
+    return describe_with(plan, scene, kind, false);
+}
+
+static struct annotations describe_crossed(struct plan *plan, struct scene scene, enum scene_kind kind)
+{
+    return describe_with(plan, scene, kind, true);
 }
 
 static void expect_place(const double place[2], double right_mm, double up_mm)
@@ -139,6 +152,62 @@ static void a_slice_pane_shows_the_measures_that_lie_in_it(void **state)
     scene.measures[0].value.visible = false;
     struct annotations annotations = describe(plan, scene, SCENE_KIND_CORONAL);
     assert_int_equal(annotations.n_labels + annotations.n_lines, 0);
+    annotations_finish(&annotations);
+    plan_and_derived_destroy(plan);
+}
+
+/* 4 pixels per mm: the picture of 100 x 75 mm is free at 6 % of each edge, and 2.5 % of its height around the middle.
+ */
+static void the_crosshair_is_drawn_on_a_slice_from_edge_to_edge_free_around_its_middle(void **state)
+{
+    (void)state;
+    struct plan *plan = ramp_plan();
+    struct scene scene = scene_of(plan);
+    scene.image.slices.sagittal.position_mm = 10;
+    scene.image.slices.axial.position_mm = -20;
+    const double edge[2] = { 50 * 0.88, 37.5 * 0.88 }, gap = 75 * 0.025;
+    const double arms[4][4] = { { -edge[0], -20, 10 - gap, -20 },
+                                { 10 + gap, -20, edge[0], -20 },
+                                { 10, -edge[1], 10, -20 - gap },
+                                { 10, -20 + gap, 10, edge[1] } };
+    struct annotations annotations = describe_crossed(plan, scene, SCENE_KIND_CORONAL);
+    assert_int_equal(annotations.n_lines, 4);
+    for (size_t i = 0; i < 4; i++) {
+        bool is_found = false;
+        for (size_t j = 0; j < 4; j++) {
+            double found[4] = { (annotations.lines[j].from[0] * WIDTH - WIDTH / 2.0) / 4,
+                                (HEIGHT / 2.0 - annotations.lines[j].from[1] * HEIGHT) / 4,
+                                (annotations.lines[j].to[0] * WIDTH - WIDTH / 2.0) / 4,
+                                (HEIGHT / 2.0 - annotations.lines[j].to[1] * HEIGHT) / 4 };
+            double off = 0;
+            for (int k = 0; k < 4; k++)
+                off = fmax(off, fabs(found[k] - arms[i][k]));
+            is_found = is_found || off < 1e-6;
+        }
+        assert_true(is_found);
+    }
+    annotations_finish(&annotations);
+    annotations = describe_crossed(plan, scene_of(plan), SCENE_KIND_3D);
+    assert_int_equal(annotations.n_lines, 0);
+    annotations_finish(&annotations);
+    plan_and_derived_destroy(plan);
+}
+
+static void a_crosshair_beside_the_picture_leaves_the_lines_that_cross_it(void **state)
+{
+    (void)state;
+    struct plan *plan = ramp_plan();
+    struct scene scene = scene_of(plan);
+    scene.image.slices.sagittal.position_mm = 500; /* the line along z is beside the picture, that along x crosses it */
+    struct annotations annotations = describe_crossed(plan, scene, SCENE_KIND_CORONAL);
+    assert_int_equal(annotations.n_lines, 1);
+    expect_place(annotations.lines[0].from, -44, 0);
+    expect_place(annotations.lines[0].to, 44, 0);
+    annotations_finish(&annotations);
+    scene = scene_of(plan);
+    scene.image.slices.sagittal.position_mm = scene.image.slices.axial.position_mm = NAN;
+    annotations = describe_crossed(plan, scene, SCENE_KIND_CORONAL);
+    assert_int_equal(annotations.n_lines, 0);
     annotations_finish(&annotations);
     plan_and_derived_destroy(plan);
 }
@@ -263,6 +332,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_measure_says_its_value_with_name_and_unit),
         cmocka_unit_test(a_slice_pane_shows_the_measures_that_lie_in_it),
+        cmocka_unit_test(the_crosshair_is_drawn_on_a_slice_from_edge_to_edge_free_around_its_middle),
+        cmocka_unit_test(a_crosshair_beside_the_picture_leaves_the_lines_that_cross_it),
         cmocka_unit_test(lines_are_painted_on_the_picture_and_nowhere_else),
         cmocka_unit_test(the_axes_stand_a_tenth_out_of_the_plans_box_on_each_side),
         cmocka_unit_test(letters_stand_at_the_ends_of_the_axes_in_3d_alone),

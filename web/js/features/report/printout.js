@@ -5,6 +5,7 @@ import { repeat } from '../../../lib/directives/repeat.js';
 import { live } from '../../../lib/directives/live.js';
 import { isDrafted } from '../beams/beams.js';
 import { beamWords, crosshair, doseWords, reportSummary, shownImage } from '../../room/plan.js';
+import { approvalOf, dateWords, shownPatient, shownTreatmentPlan, unknownWords } from '../../room/identity.js';
 import { volumeDifference } from '../regions/shapes.js';
 import { draftBelongs, draftWords } from '../beams/beam_words.js';
 import { hasCharts } from '../dose/plots/chart_loader.js';
@@ -55,14 +56,52 @@ export function printoutDialog(world) {
 
 /** A table of layout: its foot stands on every printed page. */
 function sheet(world, plan) {
-  const time = new Date().toISOString().slice(0, 16).replace('T', ' ');
-  return html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}
+  const patient = patientWords(world, plan);
+  return html`<article class="sheet"><div class="sheet-body">${head(world, plan)}
+    ${hasCharts(plan) ? world.charts.draw('basis') : nothing}${pictures(world, plan)}${figures(world)}
     ${hasCharts(plan) ? world.charts.draw('printed') : nothing}${ofFits(world.room)?.usedSheet(world) ?? nothing}
     ${measures(world)}${warnings(plan)}</div>
-  <footer class="sheet-foot"><div>${say.foot({ plan: plan.name, time, revision: world.room.revision.value })}<br><b>${say.research}</b></div></footer></article>`;
+  <footer class="sheet-foot"><div>${say.foot({ patient, plan: plan.name, time: printedAt(new Date()), revision: world.room.revision.value })}<br><b>${say.research}</b></div></footer></article>`;
 }
 
-function head({ room }, plan) {
+/** "2026-11-27 14:36 UTC+2": of this computer. */
+function printedAt(date) {
+  const ahead = -date.getTimezoneOffset();
+  const [hours, minutes] = [Math.floor(Math.abs(ahead) / 60), Math.abs(ahead) % 60];
+  const local = new Date(date.getTime() + ahead * 60000).toISOString().slice(0, 16).replace('T', ' ');
+  return `${local} UTC${ahead < 0 ? '−' : '+'}${hours}${minutes ? `:${String(minutes).padStart(2, '0')}` : ''}`;
+}
+
+/** Masked: a report is never of a full name. */
+const patientWords = ({ room }, plan) => shownPatient(plan, room.scene.value)?.masked ?? (plan.isPhantom ? say.isPhantom : unknownWords);
+
+/** The treatment plan that is shown, its approval and prescription; [] where the files have none. */
+function treatmentRows({ room }, plan) {
+  const treatment = shownTreatmentPlan(plan, room.scene.value);
+  if (!treatment) return [];
+  const { label, date, review_date: reviewed, reviewer, prescription_gy: gy, fractions } = treatment;
+  return [
+    [say.treatment, listed(label, dateWords(date))],
+    [say.approval, listed(approvalOf(treatment)[0], dateWords(reviewed), reviewer)],
+    [
+      say.prescription,
+      listed(
+        Number.isFinite(gy) ? say.prescribed({ gy: significant(gy) }) : say.notStated,
+        Number.isFinite(fractions) && say.nFractions({ n: fractions }),
+      ),
+    ],
+  ];
+}
+
+/** Whether a draft beam stands in the room, whose dose is never shown. */
+function draftRow({ room }, plan) {
+  const scene = room.scene.value;
+  if (!plan.beams.length && !isDrafted(plan, scene)) return [];
+  return [[say.draftNow, isDrafted(plan, scene) ? listed(draftBelongs(plan, scene), draftWords(plan, scene)) : say.noDraft]];
+}
+
+function head(world, plan) {
+  const { room } = world;
   const images = plan.images.map(({ id, modality, size, stepMm }) =>
     say.imageIs({ image: `${modality} ${id}`, size: size.join(' × '), step: stepMm.map((mm) => number(mm, 2)).join(' × ') }),
   );
@@ -71,10 +110,14 @@ function head({ room }, plan) {
   const doses = plan.doses.map((dose) => say.doseIs({ dose: dose.name || dose.id, words: unitText(doseWords(dose)) }));
   const rows = [
     [say.plan, plan.isPhantom ? say.phantom({ plan: name }) : name],
+    [say.patient, patientWords(world, plan)],
+    ...treatmentRows(world, plan),
     [say.images, images.join('; ') || say.none],
     [say.regions, say.nRegions({ count: number(nRegions), n: nRegions })],
     [say.doses, doses.join('; ') || say.none],
     [say.beams, plan.beams.map((beam) => listed(beam.name || beam.id, beamWords(beam))).join('; ') || say.none],
+    ...draftRow(world, plan),
+    ...(room.accepted.value.size ? [] : [[say.used, say.none]]),
     ...(plan.note ? [[say.note, plan.note]] : []),
     [say.loadReport, reportSummary(plan.report)],
   ];

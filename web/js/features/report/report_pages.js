@@ -46,7 +46,7 @@ export class Printout {
 
   /** Adds a snapshot of this view, with the values at its crosshair. Throws when there is no picture. */
   async add(room, document) {
-    const blob = await this.#api.snapshot(room, document);
+    const blob = await this.#api.snapshot(room, document, false, '&crosshair=true');
     const record = await (await import('./snapshot_record.js')).recordOfFile(blob);
     const probe = await this.#api.probe(room.planId.value, crosshair(record.scene)).catch(() => null);
     this.#set([...this.entries.value, { key: this.#nextKey++, url: await dataUrl(blob), caption: '', record, probe }]);

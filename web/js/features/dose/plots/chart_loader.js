@@ -8,7 +8,7 @@ export class ChartLoader {
     this.#parts = later(async () => (await import('./charts.js')).makeCharts(world), 'lib/uplot.css', 'js/features/dose/plots/chart.css');
   }
 
-  /** One part of the plots as a template. @param {'drawer'|'sheet'|'limits'|'printed'} name */
+  /** One part of the plots as a template. @param {'drawer'|'sheet'|'limits'|'basis'|'printed'} name */
   draw(name) {
     return this.#parts.draw((parts) => parts[name]());
   }

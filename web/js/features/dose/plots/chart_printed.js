@@ -27,6 +27,9 @@ function ticksOf(low, high) {
   );
 }
 
+/** A narrow column breaks neither a number nor its sign. */
+const unbroken = (text) => text.replaceAll('\u2009', '\u202f').replace(/([≤≥]) /g, '$1\u00a0');
+
 /** On paper a colour has to be dark enough. */
 const onPaper = (color) => {
   const rgb = [1, 3, 5].map((at) => Number.parseInt(color.slice(at, at + 2), 16));
@@ -80,7 +83,7 @@ function histograms(world, plan, scene) {
   const basis = basisRows(world, result.quantity || scene.dose.quantity, result, {
     basis: basisWords(world),
     population: populationWords(curves.population),
-  }).filter(({ id }) => !['plan', 'revision', 'use', 'method'].includes(id));
+  }).filter(({ id }) => !['plan', 'revision', 'use', 'method'].includes(id) && !id.startsWith('weights_of_')); // those stand in the basis
   return html`<h2>${say.histogram}</h2><p class="values">${basis.map(({ name: word, values: of }) => `${word}: ${of.join(', ')}`).join('; ')}.</p>
     ${drawing(
       say.histogram,
@@ -102,7 +105,7 @@ function histograms(world, plan, scene) {
       },
     )}
     <div class="numbers-scroll" role="group" tabindex="0" aria-label=${say.figures}><table class="numbers-table chart-figures"><thead><tr><th scope="col">${listed(say.region, unit)}</th><th scope="col">cm³</th><th scope="col">${say.withoutDose}</th><th scope="col">${say.univels}</th>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<th scope="col">${figureWords(figure)}</th>`)}</tr></thead>
-      <tbody>${list.map((curve) => html`<tr><th scope="row">${name(curve)}</th><td>${number(curve.volume, 2)}</td><td>${curve.missing ? significant(curve.missing) : '0'}</td><td>${number(curve.univels)}</td>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<td>${boundsWords(curve.figures[figure], significant)}</td>`)}</tr>`)}</tbody></table></div>
+      <tbody>${list.map((curve) => html`<tr><th scope="row">${name(curve)}</th><td>${number(curve.volume, 2)}</td><td>${curve.missing ? significant(curve.missing) : '0'}</td><td>${unbroken(number(curve.univels))}</td>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<td>${unbroken(boundsWords(curve.figures[figure], significant))}</td>`)}</tr>`)}</tbody></table></div>
     <p class="values">${result.method} ${leftWords(world)}</p>`;
 }
 

@@ -5,6 +5,7 @@ import { limitsBlock } from './chart_limits.js';
 import { irradiationBlock } from './irradiation.js';
 import { drawer, sheet } from './chart_drawer.js';
 import { Highlight } from './chart_highlight.js';
+import { basisTable } from './chart_basis.js';
 import { printed } from './chart_printed.js';
 
 /** @param {object} room_world that of room_page.js */
@@ -27,6 +28,7 @@ export function makeCharts(room_world) {
     drawer: () => drawer(world),
     sheet: () => sheet(world),
     limits: () => [limitsBlock(world), irradiationBlock(world)],
+    basis: () => basisTable(world),
     printed: () => printed(world),
     stop() {
       stop();

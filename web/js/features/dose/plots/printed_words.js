@@ -2,6 +2,11 @@
 import { sentences } from '../../../parts/sentences.js';
 
 export const say = sentences('dose.plots.printed', {
+  basis: 'Basis of the dose',
+  basisIs: 'As the room is now; below each figure stands its own.',
+  notKnown: 'not known',
+  irradiation: 'irradiation',
+  minutes: '{n} min',
   curves: 'Curves',
   histogramError: 'Histograms: {reason}',
   histogram: 'Dose-volume histogram',
