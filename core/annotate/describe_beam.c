@@ -28,9 +28,11 @@ void beam_words(char text[WORDS_SIZE], const struct snapshot *snapshot, const st
 
 void beam_place_words(char text[WORDS_SIZE], double along_mm)
 {
+    const double metre_mm = 1000;
     char number[40];
-    words_number(number, along_mm, 1);
-    (void)snprintf(text, WORDS_SIZE, "%s mm from entry", number);
+    bool is_far = fabs(along_mm) >= metre_mm, is_before = along_mm <= -0.05;
+    words_number(number, (is_before ? fabs(along_mm) : along_mm) / (is_far ? metre_mm : 1), 1);
+    (void)snprintf(text, WORDS_SIZE, "%s %s %s source end", number, is_far ? "m" : "mm", is_before ? "before" : "from");
 }
 
 /* "ring 120 mm", "ring 88.5 mm": a ring that is drawn need not be the beam's aperture. */
@@ -161,7 +163,7 @@ static void add_eye(const struct labels *labels, const struct beam_eye_marks *ma
         ring_words(label->text, marks->ring_mm, "");
     label = marks->has_planned ? add_label(labels, marks->planned_entry, false) : NULL;
     if (label)
-        (void)snprintf(label->text, sizeof label->text, "planned entry");
+        (void)snprintf(label->text, sizeof label->text, "planned source end");
     add_numbers(labels, marks);
 }
 

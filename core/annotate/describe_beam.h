@@ -10,12 +10,12 @@ enum { DESCRIBE_BEAM_MAX_ITEMS = 4 };
 void beam_describe(struct annotations *annotations, const struct snapshot *snapshot);
 
 /* Adds the names of the beams that are drawn in space, and along a beam the numbers of the crosshair, the ring's
- * diameter and "planned entry", of a picture that is as wide; numbers only where no label is. camera: the snapshot's.
- * errors ERROR_MEMORY */
+ * diameter and "planned source end", of a picture that is as wide; numbers only where no label is. camera: the
+ * snapshot's. errors ERROR_MEMORY */
 NODISCARD bool beam_label(struct annotations *annotations, const struct snapshot *snapshot, const struct camera *camera,
                           int width_px, struct error *err);
 
 /* "beam-1", "beam-1 (AP)" with a name of its own; of a draft "draft of beam-1", "draft steeper of beam-1". */
 void beam_words(char text[WORDS_SIZE], const struct snapshot *snapshot, const struct beam_shown *beam);
-/* "44.3 mm from entry" */
+/* "44.3 mm from source end", "4.4 m before source end": as the page has it. */
 void beam_place_words(char text[WORDS_SIZE], double along_mm);

@@ -156,10 +156,11 @@ static void write_mean(char text[96], const struct snapshot *snapshot, const str
                         measure->points[2].at_mm, &values) ||
         values.n == 0)
         return;
-    const char *unit = snapshot->plan->images[index].unit;
+    char quoted[WORDS_UNIT_SIZE];
+    const char *unit = words_unit(snapshot->plan->images[index].unit, quoted);
     words_significant(mean, values.mean);
     words_significant(sd, values.sd);
-    (void)snprintf(text, 96, "%s \u00b1 %s%s%.10s", mean, sd, *unit ? " " : "", unit);
+    (void)snprintf(text, 96, "%.24s \u00b1 %.24s%s%.24s", mean, sd, *unit ? " " : "", unit);
 }
 
 static void write_value(char text[96], const struct scene_measure *measure)

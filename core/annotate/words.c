@@ -114,15 +114,54 @@ static int window_digits(double width)
     return digits < most ? digits : most;
 }
 
+const char *words_unit(const char *unit, char quoted[WORDS_UNIT_SIZE])
+{
+    /* DICOM PS3.3 C.8.9.1 (Units), C.11.1.1.2 (Rescale Type). The page has the same table. */
+    static const struct {
+        const char *code, *words;
+    } units[] = { { "CNTS", "counts" },
+                  { "CPS", "counts/s" },
+                  { "PROPCNTS", "relative counts" },
+                  { "PROPCPS", "relative counts/s" },
+                  { "NONE", "" },
+                  { "CM2", "cm\u00b2" },
+                  { "CM2ML", "cm\u00b2/mL (SUV)" },
+                  { "PCNT", "%" },
+                  { "PCT", "%" },
+                  { "BQML", "Bq/mL" },
+                  { "GML", "g/mL (SUV)" },
+                  { "MGML", "mg/mL" },
+                  { "MGMINML", "mg/min/mL" },
+                  { "UMOLML", "\u00b5mol/mL" },
+                  { "UMOLMINML", "\u00b5mol/min/mL" },
+                  { "MLG", "mL/g" },
+                  { "MLML", "mL/mL" },
+                  { "MLMING", "mL/min/g" },
+                  { "MLMINML", "mL/min/mL" },
+                  { "1CM", "1/cm" },
+                  { "STDDEV", "standard deviations" },
+                  { "HU_MOD", "HU (modified)" },
+                  { "SUV", "SUV" } };
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strcmp(unit, units[i].code) == 0)
+            return units[i].words;
+    size_t n = strlen(unit);
+    if (n < 3 || n != strspn(unit, "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"))
+        return unit;
+    (void)snprintf(quoted, WORDS_UNIT_SIZE, "\u201c%.*s\u201d", WORDS_UNIT_SIZE - 8, unit);
+    return quoted;
+}
+
 void words_window(char text[WORDS_SIZE], const struct scene_window *window, const char *unit)
 {
-    char width[40], center[40], gamma[24] = "";
+    char width[40], center[40], gamma[24] = "", quoted[WORDS_UNIT_SIZE];
+    const char *words = words_unit(unit, quoted);
     int digits = window_digits(window->width);
     words_number(center, window->center, digits);
     words_number(width, window->width, digits);
     if (window->gamma != 1)
         (void)snprintf(gamma, sizeof gamma, "  gamma %.3g", window->gamma);
-    (void)snprintf(text, WORDS_SIZE, "C %s  W %s%s%s%s", center, width, *unit ? " " : "", unit, gamma);
+    (void)snprintf(text, WORDS_SIZE, "C %s  W %s%s%s%s", center, width, *words ? " " : "", words, gamma);
 }
 
 const char *words_color_map(enum scene_color_map map)

@@ -3,6 +3,7 @@
 #include "core/scene/snapshot.h"
 
 enum { WORDS_SIZE = 256 }; /* as ANNOTATION_TEXT_SIZE */
+enum { WORDS_UNIT_SIZE = 48 };
 
 /* A number as the page writes it: with a true minus, and rounded up where it lies exactly between two. */
 void words_number(char text[40], double value, int digits);
@@ -18,6 +19,9 @@ void words_normal(char text[WORDS_SIZE], const struct plane *plane);
 const char *words_plane_name(const struct scene *scene, const struct plane *plane);
 /* The image's name with its modality. */
 void words_image(char text[WORDS_SIZE], const struct plan *plan, size_t image);
+/* The unit of an image's values for people: "Bq/mL" for DICOM's code BQML, "g/mL (SUV)" for GML. A code that is none of
+ * DICOM's comes in quotation marks, written to quoted; other text as it is. */
+const char *words_unit(const char *unit, char quoted[WORDS_UNIT_SIZE]);
 /* "C 40  W 400 HU" */
 void words_window(char text[WORDS_SIZE], const struct scene_window *window, const char *unit);
 /* "in hot iron"; "" for grey. */

@@ -128,7 +128,7 @@ static void add_method(cJSON *json, const struct asking *asking)
                                         : NULL;
     snprintf(text, sizeof text,
              "Regions: %s; the dose at a univel's centre%s, trilinear in the dose's own grid%s%s. 100 %% is the whole "
-             "region. Univels without a value are counted in missing_cm3; from 0.1 %% of a region on its figures are "
+             "region. Univels without a value have no dose; from 0.1 %% of a region on its figures are "
              "bounds, for any dose there from 0 on. Figures: ICRU Report 83.",
              population_words(asking->population), border, basis ? "; " : "", basis ? basis : "");
     cJSON_AddStringToObject(json, "method", text);

@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { axe } from './axe.mjs';
 import { full, isDue, missing, once, startWorld } from './browser.mjs';
+import { codesOn } from './plain_words.mjs';
 import { sizes, states } from './room_states.mjs';
 
 describe('the room page for screen readers and keyboards', { skip: missing && `${missing} is not there` }, () => {
@@ -16,12 +17,13 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
 
   // All sizes in the long suite; the quick one has the panels of dose at the smallest (dose.test.mjs).
   for (const [size, options] of Object.entries(sizes).filter(() => isDue(false)))
-    it(`${size}: axe-core finds nothing in any state`, async () => {
+    it(`${size}: axe-core finds nothing in any state, and no word is one of programs`, async () => {
       const page = await world.newPage(`rooms/${await world.newRoom()}`, options);
       await full(page);
       for (const [name, act] of states[size]) {
         await act(page);
         assert.deepEqual(await axe(page), [], name);
+        assert.deepEqual(await codesOn(page), [], name);
       }
       await page.context().close();
     });

@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { missing, startWorld } from './browser.mjs';
 import { guidePlans, walk } from './guide_tours.mjs';
+import { codesOn } from './plain_words.mjs';
 
 const folder = new URL('../../docs/guide/', import.meta.url).pathname;
 const pages = readdirSync(folder)
@@ -29,15 +30,20 @@ describe("the user's guide", { skip: missing && `${missing} is not there` }, () 
 
   it('can be followed, and says what the page says', async () => {
     const pictures = [];
+    const codes = new Set();
     let keys = [];
     const seen = plain(
       await walk(world, {
-        shot: async (_, name) => void pictures.push(`${name}.jpg`),
+        shot: async (target, name) => {
+          pictures.push(`${name}.jpg`);
+          for (const code of await codesOn(target.page?.() ?? target)) codes.add(code);
+        },
         keys: (rows) => {
           keys = rows;
         },
       }),
     );
+    assert.deepEqual([...codes], [], 'words of programs on the page');
     const unseen = pages.flatMap(({ name, text }) =>
       [...text.matchAll(/\*\*(.+?)\*\*/gs)]
         .map(([, words]) => words)

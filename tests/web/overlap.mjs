@@ -41,7 +41,7 @@ export const overlaps = (page) =>
     for (const element of document.querySelectorAll('svg text'))
       if (element.textContent.trim() && isVisible(element))
         add(element, element.getBoundingClientRect(), `letter "${element.textContent}"`, 2);
-    for (const element of document.querySelectorAll('.overlay .scale .ink, .legend'))
+    for (const element of document.querySelectorAll('.overlay .scale .ink, .picture-strip'))
       if (isVisible(element)) add(element, element.getBoundingClientRect(), element.getAttribute('class'), 0);
     for (const element of document.querySelectorAll('button, a.button, input, select, summary'))
       if (isVisible(element))

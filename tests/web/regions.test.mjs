@@ -7,6 +7,7 @@ import { after, before, describe, it } from 'node:test';
 import { call } from '../api/daemon.mjs';
 import { writeFoamPlan } from '../api/foam_plan.mjs';
 import { Client } from '../api/ws_client.mjs';
+import { overPictures } from './anatomy.mjs';
 import { full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 import { writeLabels } from './labels.mjs';
 
@@ -39,12 +40,13 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await choose(page, 'Shown as', 'NURBS');
     await page.locator('button', { hasText: 'All regions like this' }).click();
     await page.locator('[aria-label="Download the surface"]').waitFor();
-    assert.equal(await page.locator('.legend.missing').count(), 0, 'traces can show both');
+    assert.equal(await page.locator('.left-out').count(), 0, 'traces can show both');
     await choose(page, 'Control points', 'Degree bins');
-    const legend = page.locator('[data-view="1"] .legend.missing');
+    const legend = page.locator('.left-out');
     await legend.waitFor();
     assert.match(await legend.textContent(), /Not shown as NURBS: pair/);
-    assert.equal(await page.locator('.pane:not([data-view="1"]) .legend').count(), 0, 'slices show its outline all the same');
+    assert.equal(await legend.locator('p').count(), 1, 'slices show its outline all the same');
+    assert.deepEqual(await overPictures(page), []);
     assert.match(await page.locator('[data-region="pair"] .refused').getAttribute('aria-label'), /2 pieces/);
     assert.equal(await page.locator('[data-region="ball"] .refused').count(), 0);
     await shoot(page, 'regions-refused');
@@ -66,9 +68,9 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
       await patch(room, { regions: { foam: { visible: false } } });
       const page = await world.newPage(`rooms/${room}`);
       await full(page);
-      assert.equal(await page.locator('.legend.missing').count(), 0);
+      assert.equal(await page.locator('.left-out').count(), 0);
       await patch(room, { regions: { foam: { visible: true, representation: 'univels' }, block: { representation: 'univels' } } });
-      const legend = page.locator('[data-view="1"] .legend.missing');
+      const legend = page.locator('.left-out');
       await legend.waitFor();
       assert.match(await legend.textContent(), /Not drawn: foam/);
       assert.match(await legend.locator('button').getAttribute('title'), /foam.*40000000/);
@@ -126,15 +128,17 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await page.context().close();
   });
 
-  later('the colours of the check have a legend in every slice pane', async () => {
+  later('the colours of the check have a legend above the panes while a slice is shown', async () => {
     const page = await world.newPage(`rooms/${await world.newRoom('balls')}`);
     await full(page);
     await page.locator('[data-region="ball"] button.name').click();
-    const legends = page.locator('.legend[aria-label="Colours of the check"]');
+    const legends = page.getByRole('list', { name: 'Colours of the check' });
     assert.equal(await legends.count(), 0);
     await page.locator('label', { hasText: 'Mark where surface and univels differ' }).click();
-    await legends.nth(2).waitFor();
-    assert.equal(await legends.count(), 3);
+    await legends.waitFor();
+    assert.deepEqual(await overPictures(page), []);
+    await page.locator('[aria-label="Maximise 3-D"]').click();
+    await legends.waitFor({ state: 'detached' });
     await page.context().close();
   });
 

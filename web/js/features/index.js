@@ -50,7 +50,7 @@ import { tracks } from './tracks/feature.js';
  * @typedef {object} PanePart
  * @property {(place) => unknown} [layer] SVG below the crosshair; place {scene, plane: null in 3-D, tolerance, header, box, pane}
  * @property {() => {lines, handles}} [lines] below and above the letters @property {(place: () => object) => unknown} [pins]
- * @property {(size: number[], isLeftTaken: boolean) => unknown} [legend] @property {() => unknown} [head] behind the pane's place in its header
+ * @property {() => unknown} [head] behind the pane's place in its header
  *
  * @typedef {object} Section
  * @property {string} id @property {string} name @property {string} icon @property {number} place among the sections

@@ -13,7 +13,7 @@ import { letters } from './letters.js';
 import { overlay } from './overlay.js';
 import { Painter } from './painter.js';
 import { PointerReader } from './pointer.js';
-import { millimetres, nameSome, number, windowText } from '../parts/format.js';
+import { millimetres, number, windowText } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { known, later } from '../parts/lazy.js';
 import { mount, variables } from '../parts/mount.js';
@@ -28,14 +28,12 @@ import { boxOf, pixelRatio } from '../parts/page_look.js';
 export const card = later(() => import('./read_out.js'));
 const resizeMs = 120;
 const maxSide = 4096;
-const lowPane = 300; // px; lower slice panes show legends only while they are active
 
 export class Pane {
   #world;
   #room;
   #ui;
   #view;
-  #refused;
   #probed;
   #size = signal([0, 0]);
   #resizeTimer = 0;
@@ -44,12 +42,11 @@ export class Pane {
 
   /** @param {HTMLElement} host @param {object} world that of the room page @param {import('../room/view.js').ViewState} view */
   constructor(host, world, view) {
-    const { room, ui, refused, probed, decode, redraw, onPainted } = world;
+    const { room, ui, probed, decode, redraw, onPainted } = world;
     this.#world = world;
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
-    this.#refused = refused;
     this.#probed = probed;
     this.host = host;
     const place = () => this.place;
@@ -172,7 +169,6 @@ export class Pane {
           <svg class="overlay pointers" aria-hidden="true"></svg><div class="pointed"></div>
           ${this.#cover()}
         </div>
-        ${this.#legend()}
         ${orientation({ room: this.#room, ui: this.#ui }, this.actions, this.#size.value)}
         ${tools.slider ?? this.#slider()}
       </div>${tools.foot ?? nothing}
@@ -257,39 +253,6 @@ export class Pane {
     const plan = this.#room.plan.value;
     if (!plan || plan.images.length || plan.regions.length) return nothing;
     return html`<div class="cover quiet"><p>${isInSpace(this.#view.kind) ? say.nothingToDraw : say.nothingToCut}</p></div>`;
-  }
-
-  /** The legend: regions that are missing from the picture, and the colours of the segmentation check. */
-  #legend() {
-    const scene = this.#room.scene.value;
-    const plan = this.#room.plan.value;
-    if (!scene || !plan || !this.#view.painted.value) return nothing;
-    const isLow = this.#size.value[1] < lowPane;
-    if (isLow && !isInSpace(this.#view.kind) && this.#ui.active.value !== this.#view.number) return nothing;
-    const check =
-      !isInSpace(this.#view.kind) && scene.check.visible && plan.regions.length
-        ? html`<ul class="legend" aria-label=${say.checkColours}>
-        <li><i class="beyond"></i>${say.beyond}</li><li><i class="within"></i>${say.within}</li></ul>`
-        : nothing;
-    const reasons = isInSpace(this.#view.kind) ? this.#refused.value : this.#view.missing.value.reasons;
-    const missing = plan.regions.filter(({ id }) => reasons[id]);
-    const legends = this.actions.parts.map((part) => part.legend?.(this.#size.value, missing.length > 0 || check !== nothing));
-    return html`${legends}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
-  }
-
-  #missing(scene, missing, reasons, check) {
-    const words = !isInSpace(this.#view.kind)
-      ? say.notChecked
-      : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs')
-        ? say.notNurbs
-        : say.notDrawn;
-    const nUnnamed = Math.max(0, this.#view.missing.value.n - missing.length);
-    const regions = nameSome([...missing.map(({ name }) => name), ...Array(nUnnamed).fill(say.others)]);
-    const show = () => {
-      this.#ui.choose('region', missing[0].id);
-    };
-    return html`${check}<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>${words({ regions })}</p>
-      <button title=${reasons[missing[0].id]} aria-label=${say.whyNot({ region: missing[0].name })} @click=${show}>${say.why}</button></div>`;
   }
 
   #slider() {

@@ -32,12 +32,9 @@ export function readOut({ room, pointed }, host) {
       ${lines.map((line) => html`<p>${line}</p>`)}</div>`;
 }
 
-/** Boxes that the card must not cover: letters, scale bar, axes figure, legend. */
+/** Boxes that the card must not cover: letters, scale bar, axes figure. */
 function takenIn(picture, { left, top }) {
-  const marks = [
-    ...picture.querySelectorAll('.overlay text, .overlay .figure, .overlay .scale'),
-    ...picture.parentElement.querySelectorAll('.legend'),
-  ];
+  const marks = [...picture.querySelectorAll('.overlay text, .overlay .figure, .overlay .scale')];
   return marks.map((mark) => {
     const box = boxOf(mark);
     return { x: box.left - left, y: box.top - top, width: box.width, height: box.height };

@@ -2,7 +2,7 @@
 import { describe } from '../room/camera.js';
 import { isInSpace } from '../room/kinds.js';
 import { positionOf } from '../room/obliques.js';
-import { millimetres } from '../parts/format.js';
+import { alongBeam, millimetres } from '../parts/format.js';
 import { letters } from './letters.js';
 import { hasOwnRegions } from './orientation_menu.js';
 import { say } from './words.js';
@@ -13,7 +13,7 @@ export function whereWords(room, view, actions) {
   const scene = room.scene.value;
   if (!scene || !room.plan.value) return '';
   if (kind === 'beam') return say.locked;
-  if (kind === 'beam-slice') return say.fromEntry({ distance: millimetres(scene.beam.slice.along_mm) });
+  if (kind === 'beam-slice') return alongBeam(scene.beam.slice.along_mm);
   if (isInSpace(kind)) {
     const camera = view.document.value && actions.camera;
     return hasOwnRegions(view) ? say.targetsOnly({ camera: describe(camera) }) : describe(camera);

@@ -34,6 +34,12 @@ export function significant(value) {
 
 export const millimetres = (value) => `${number(value, 1)} mm`;
 
+/** A place along a beam: "44.3 mm from source end", "4.4 m before source end". core/annotate/describe_beam.c says the same. */
+export function alongBeam(mm) {
+  const distance = Math.abs(mm) < 1000 ? millimetres(Math.abs(mm)) : `${number(Math.abs(mm) / 1000, 1)} m`;
+  return mm <= -0.05 ? say.beforeSourceEnd({ distance }) : say.fromSourceEnd({ distance });
+}
+
 /** "L 24.9  P 38.4  S \u221264.9 mm" */
 export const position = ([left, posterior, superior]) => `L ${number(left, 1)}  P ${number(posterior, 1)}  S ${number(superior, 1)} mm`;
 
@@ -60,9 +66,39 @@ export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 
-/** "1/cm²" for a unit as files write it, "1/cm2"; "Gy(w)" for a weighted dose under its older names. */
+// Codes of DICOM: PS3.3 C.8.9.1 (Units), C.11.1.1.2 (Rescale Type). core/annotate/words.c has the same table.
+const unitCodes = new Map(
+  Object.entries({
+    CNTS: say.counts,
+    CPS: `${say.counts}/s`,
+    PROPCNTS: say.relativeCounts,
+    PROPCPS: `${say.relativeCounts}/s`,
+    NONE: '',
+    CM2: 'cm²',
+    CM2ML: say.suv({ unit: 'cm²/mL' }),
+    PCNT: '%',
+    PCT: '%',
+    BQML: 'Bq/mL',
+    GML: say.suv({ unit: 'g/mL' }),
+    MGML: 'mg/mL',
+    MGMINML: 'mg/min/mL',
+    UMOLML: 'µmol/mL',
+    UMOLMINML: 'µmol/min/mL',
+    MLG: 'mL/g',
+    MLML: 'mL/mL',
+    MLMING: 'mL/min/g',
+    MLMINML: 'mL/min/mL',
+    '1CM': '1/cm',
+    STDDEV: say.standardDeviations,
+    HU_MOD: say.modifiedUnit({ unit: 'HU' }),
+    SUV: 'SUV',
+  }),
+);
+
+/** "1/cm²" for a unit as files write it, "1/cm2"; "Gy(w)" for a weighted dose under its older names; "Bq/mL" for a code; an unknown code in quotation marks. */
 export const unitText = (unit) =>
-  unit
+  unitCodes.get(unit) ??
+  (/^[A-Z0-9_]{3,}$/.test(unit) ? `“${unit}”` : unit)
     .replace(/\bGy[- ]?Eq\b|\bGyw\b/gi, 'Gy(w)')
     .replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
 
@@ -73,7 +109,8 @@ export const listed = (...words) => words.filter(Boolean).join(', ');
 export const windowText = ({ center, width, gamma = 1 }, unit, isInverted = false) => {
   const digits = width < 10 ? Math.min(2 - Math.floor(Math.log10(width)), 20) : 0;
   const [c, w] = width < 1e-4 ? [significant(center), significant(width)] : [number(center, digits), number(width, digits)];
-  const window = `C ${c}  W ${w}${unit ? ` ${unitText(unit)}` : ''}${gamma === 1 ? '' : ` γ ${Number(gamma.toFixed(2))}`}`;
+  const words = unit ? unitText(unit) : '';
+  const window = `C ${c}  W ${w}${words && ` ${words}`}${gamma === 1 ? '' : ` γ ${Number(gamma.toFixed(2))}`}`;
   return isInverted ? say.windowInverted({ window }) : window;
 };
 

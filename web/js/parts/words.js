@@ -3,6 +3,13 @@ import { sentences } from './sentences.js';
 
 export const say = sentences('parts', {
   windowInverted: '{window}  low white',
+  counts: 'counts',
+  relativeCounts: 'relative counts',
+  suv: '{unit} (SUV)',
+  standardDeviations: 'standard deviations',
+  modifiedUnit: '{unit} (modified)',
+  fromSourceEnd: '{distance} from source end',
+  beforeSourceEnd: '{distance} before source end',
   and: '{names} and {last}',
   andMore: '{names} and {n} more',
   notLoaded: 'This part of the page could not be loaded.',

@@ -27,6 +27,7 @@ export const say = sentences('wall', {
   open: 'This server is open to everybody who reaches it. Anybody sees every plan here, under any name. Nothing can be signed.',
   regions: 'Regions',
   others: 'and {n} more',
+  leftOut: 'Not drawn: {regions}',
   crosshair: 'At the crosshair',
   here: 'Here',
   nobodyHere: 'nobody',

@@ -253,12 +253,17 @@ static void a_window_stands_in_the_caption_as_on_the_page(void **state)
     /* the page rounds what lies exactly between two numbers up, and gives a narrow window three digits of its width */
     static const struct {
         struct scene_window window;
-        const char *words;
-    } cases[] = {
-        { { 134.5, 269, 1 }, "C 135  W 269 HU" },          { { -134.5, 268.5, 1 }, "C \u2212135  W 269 HU" },
-        { { 1.45, 1000, 1 }, "C 1  W 1000 HU" },           { { 0.5, 2.125, 1 }, "C 0.50  W 2.13 HU" },
-        { { 0.0213, 0.045, 1 }, "C 0.0213  W 0.0450 HU" }, { { 40, 400, 1.4 }, "C 40  W 400 HU  gamma 1.4" }
-    };
+        const char *words, *unit;
+    } cases[] = { { { 134.5, 269, 1 }, "C 135  W 269 HU", "HU" },
+                  { { -134.5, 268.5, 1 }, "C \u2212135  W 269 HU", "HU" },
+                  { { 1.45, 1000, 1 }, "C 1  W 1000 HU", "HU" },
+                  { { 0.5, 2.125, 1 }, "C 0.50  W 2.13 HU", "HU" },
+                  { { 0.0213, 0.045, 1 }, "C 0.0213  W 0.0450 HU", "HU" },
+                  { { 40, 400, 1.4 }, "C 40  W 400 HU  gamma 1.4", "HU" },
+                  { { 5, 10, 1 }, "C 5  W 10 g/mL (SUV)", "GML" },
+                  { { 5, 10, 1 }, "C 5  W 10 Bq/mL", "BQML" },
+                  { { 5, 10, 1 }, "C 5  W 10", "NONE" },
+                  { { 5, 10, 1 }, "C 5  W 10 \u201cXYZ_9\u201d", "XYZ_9" } };
     struct plan *plan = made_plan_in_hu();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct scene scene;
@@ -266,6 +271,7 @@ static void a_window_stands_in_the_caption_as_on_the_page(void **state)
         char date[ANNOTATE_DATE_SIZE] = "", field[128];
         scene_for_plan(plan, &scene);
         scene.image.window = cases[i].window;
+        snprintf(plan->images[0].unit, sizeof plan->images[0].unit, "%s", cases[i].unit);
         scene.image.slices.axial.position_mm = -4.25;
         struct view view = view_default;
         view.kind = SCENE_KIND_AXIAL;

@@ -115,7 +115,7 @@ static void the_eye_of_a_draft_has_letters_scale_place_ring_and_whose_dose_it_sh
         assert_string_equal(row_text(&words, ANNOTATION_PANE), "Beam's eye|parallel projection");
         char expected[256];
         (void)snprintf(expected, sizeof expected,
-                       "Beam: draft%s of beam-1 (FiR 1)|eye 20.0 mm from entry|"
+                       "Beam: draft%s of beam-1 (FiR 1)|eye 20.0 mm from source end|"
                        "ring 88.5 mm, drawn%s%s",
                        has_dose ? " steeper" : "", has_dose ? "|" : "", has_dose ? belongs : "");
         assert_string_equal(row_text(&words, ANNOTATION_BEAM), expected);
@@ -159,7 +159,7 @@ static void the_crosshair_has_its_numbers_and_the_ring_its_diameter(void **state
     double n = sqrt(22.1 * 22.1 + 22.9 * 22.9 + 30.8 * 30.8), h = hypot(22.1, 22.9);
     double dx = -22.1 / n, dy = -22.9 / n, dz = -30.8 / n, s = h / n;
     double right = (10 * dy - 2.7 * dx) / s, up = (-dz * dx * 10 - dz * dy * 2.7 + s * s * 2.1) / s;
-    expect_label(&words, "planned entry", 500 + 4 * right, 400 - 4 * up, 0.01);
+    expect_label(&words, "planned source end", 500 + 4 * right, 400 - 4 * up, 0.01);
     assert_int_equal(words.n_labels, 14);
     annotations_finish(&words);
 
@@ -216,8 +216,9 @@ static void a_beam_slice_says_where_it_is_and_which_beam_it_crosses(void **state
         struct view view = view_of(SCENE_KIND_BEAM_SLICE);
         view.beam.crosshair = false;
         struct annotations words = describe(plan, scene, view, 500);
-        assert_string_equal(row_text(&words, ANNOTATION_BEAM),
-                            is_side ? "Beam: side|\u22127.3 mm from entry" : "Beam: beam-1 (FiR 1)|44.3 mm from entry");
+        assert_string_equal(row_text(&words, ANNOTATION_BEAM), is_side
+                                                                   ? "Beam: side|7.3 mm before source end"
+                                                                   : "Beam: beam-1 (FiR 1)|44.3 mm from source end");
         const char *pane = row_text(&words, ANNOTATION_PANE);
         assert_true(strncmp(pane, "Beam slice|", 11) == 0);
         assert_string_equal(words.letters.top, is_side ? "S" : "SR"); /* the beam runs further to R than to A */
@@ -271,7 +272,7 @@ static void slices_and_cuts_across_a_beam_name_it_in_space(void **state)
     scene.beam.slice.along_mm = scene.clip.beam.along_mm = 31;
     struct annotations words = describe(plan, scene, view_of(SCENE_KIND_3D), 500);
     assert_non_null(
-        strstr(row_text(&words, ANNOTATION_PANE), "|beam slice of draft of beam-1 (FiR 1), 31.0 mm from entry|"));
+        strstr(row_text(&words, ANNOTATION_PANE), "|beam slice of draft of beam-1 (FiR 1), 31.0 mm from source end|"));
     assert_non_null(strstr(row_text(&words, ANNOTATION_METHODS),
                            "Cut off: before the plane along draft of beam-1 (FiR 1) at 31.0 mm"));
     annotations_finish(&words);

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from '../page.mjs';
 
-const { bytes, imageValue, number, position, signed, significant, unitText, volume, windowText } = await load('parts/format.js');
+const { alongBeam, bytes, imageValue, number, position, signed, significant, unitText, volume, windowText } = await load('parts/format.js');
 
 test('a size is never made up: what was not counted is a dash', () => {
   assert.equal(bytes(0), '–');
@@ -28,6 +28,32 @@ test('powers in units are raised, names that end in a digit are left alone', () 
   assert.equal(unitText('1/cm2'), '1/cm²');
   assert.equal(unitText('minute at 1e10 n/cm2/s'), 'minute at 1e10 n/cm²/s');
   assert.equal(unitText('mm3, beam2, m3'), 'mm³, beam2, m³');
+});
+
+test("units that files give as DICOM's codes are words; a code that DICOM does not know stands in quotation marks", () => {
+  const units = {
+    BQML: 'Bq/mL',
+    GML: 'g/mL (SUV)',
+    CNTS: 'counts',
+    PCNT: '%',
+    NONE: '',
+    HU: 'HU',
+    XYZ_9: '“XYZ_9”',
+    constructor: 'constructor',
+  };
+  for (const [code, words] of Object.entries(units)) assert.equal(unitText(code), words);
+  assert.equal(windowText({ center: 5, width: 10 }, 'GML'), 'C 5  W 10 g/mL (SUV)');
+  assert.equal(windowText({ center: 5, width: 10 }, 'NONE'), 'C 5  W 10');
+});
+
+test('a place along a beam names the end it is counted from, and far ones are in metres', () => {
+  const places = {
+    44.26: '44.3 mm from source end',
+    '-7.25': '7.3 mm before source end',
+    '-4430.1': '4.4 m before source end',
+    '-0.04': '0.0 mm from source end',
+  };
+  for (const [mm, words] of Object.entries(places)) assert.equal(alongBeam(Number(mm)), words);
 });
 
 test('a volume in a list has the figures that count, and is never none when there is one', () => {

@@ -10,7 +10,7 @@ import { shownImage } from '../../room/plan.js';
 import { beamFoot } from './beam_foot.js';
 import { showInstead, spaceInstead } from './beam_view.js';
 import { ringHandle, ringNumbers, ringWords } from './beam_ring.js';
-import { millimetres } from '../../parts/format.js';
+import { alongBeam } from '../../parts/format.js';
 import { say } from './pane_words.js';
 
 const wheelZoom = 1.12;
@@ -73,8 +73,7 @@ class AlongBeam {
   /** "44.3 mm from source end, tumor" */
   words(mm) {
     const region = this.pane.room.plan.value?.regions.find(({ id }) => id === regionAt(this.bands, mm));
-    const distance = millimetres(mm);
-    return region?.name ? say.fromEntryIn({ distance, region: region.name }) : say.fromEntry({ distance });
+    return region?.name ? say.alongIn({ place: alongBeam(mm), region: region.name }) : alongBeam(mm);
   }
 }
 

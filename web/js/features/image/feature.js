@@ -1,6 +1,5 @@
 // Images: window, colours, the second image over the first, the image as a volume; Selection of the 3-D picture.
 import { html, nothing } from '../../../lib/lit-html.js';
-import { isInSpace } from '../../room/kinds.js';
 import { signal } from '../../../lib/signals-core.js';
 import { icon } from '../../parts/icons.js';
 import { known, later } from '../../parts/lazy.js';
@@ -8,7 +7,7 @@ import { Histograms } from './histograms.js';
 import { imageRows } from './image_rows.js';
 import { say } from './words.js';
 
-const legend = later(() => import('./image_legend.js'));
+const legend = later(() => import('./image_legend.js'), 'js/parts/strip.css');
 
 /** In the header of a picture that turns by itself. */
 function turnBadge({ turning }, number) {
@@ -19,9 +18,9 @@ function turnBadge({ turning }, number) {
 }
 
 /** The legend of an image in colours, and of one blended over another; most plans show neither. */
-function legendOf(world, place) {
+function legendOf(world) {
   const { color_map, blend } = world.room.scene.value?.image ?? {};
-  return (color_map && color_map !== 'grey') || blend?.id ? (known(legend)?.imageLegend(world, place) ?? nothing) : nothing;
+  return (color_map && color_map !== 'grey') || blend?.id ? (known(legend)?.imageLegend(world) ?? nothing) : nothing;
 }
 
 /** @type {import('../index.js').Feature} */
@@ -36,8 +35,8 @@ export const image = {
   kinds: { view: '', image: 'images', volume: 'images' },
   blocks: later(() => import('./later_blocks.js'), 'js/features/image/image.css'),
   isSoon: true,
-  pane: (world, { kind, number }) => ({
-    legend: () => (isInSpace(kind) ? nothing : legendOf(world, number)),
+  legend: legendOf,
+  pane: (world, { number }) => ({
     head: () => turnBadge(world, number),
   }),
 };

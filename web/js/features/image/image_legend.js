@@ -1,6 +1,7 @@
 // The colours of an image: the bar of its window, and the legend of slice panes.
 import { html, nothing, svg } from '../../../lib/lit-html.js';
 import { blendedImage, endsOf, gammaOf, lookOf } from '../../room/image_look.js';
+import { isInSpace } from '../../room/kinds.js';
 import { isLowWhite, shownImage } from '../../room/plan.js';
 import { significant, unitText } from '../../parts/format.js';
 import { colorAt, colorMaps } from './color_maps.js';
@@ -24,13 +25,14 @@ export function colorBar({ room }, image, place = 'panel') {
     <rect width="100" height="10" fill=${`url(#${id})`} /></svg><p><span>${significant(low)}</span><span>${significant(high)} ${unitText(image.unit)}</span></p></div>`;
 }
 
-/** In a slice pane: the colours of the image shown where they are no greys, and of one that is blended over it. */
-export function imageLegend({ room }, place) {
+/** Between the bars and the panes, while a slice is on the screen: the colours of the image shown where they are no greys, and of one that is blended over it. */
+export function imageLegend({ room }) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   const blended = blendedImage(plan, scene);
   const shown = shownImage(plan, scene);
   const images = [shown, blended].filter((image) => image && (image === blended || lookOf(plan, scene, image).color_map !== 'grey'));
-  return images.length
-    ? html`<ul class="legend image-legend" aria-label=${say.colours}>${images.map((image) => html`<li><span>${image.modality}${image === blended ? ` ${Math.round(scene.image.blend.opacity * 100)} %` : ''}</span>${colorBar({ room }, image, place)}</li>`)}</ul>`
+  const isSlice = room.views.some((view) => view.isOpen.value && !isInSpace(view.kind));
+  return isSlice && images.length
+    ? html`<ul class="picture-strip image-legend" aria-label=${say.colours}>${images.map((image) => html`<li><b>${image.modality}${image === blended ? ` ${Math.round(scene.image.blend.opacity * 100)} %` : ''}</b>${colorBar({ room }, image, 'strip')}</li>`)}</ul>`
     : nothing;
 }

@@ -201,10 +201,7 @@ export class PaneLines {
   }
 
   #names(cut, pane, scene) {
-    const taken = [
-      ...takenIn(pane, scene.check?.visible),
-      ...cut.flatMap(({ at, turnAt }) => [handleBox(at), ...(turnAt ? [handleBox(turnAt)] : [])]),
-    ];
+    const taken = [...takenIn(pane), ...cut.flatMap(({ at, turnAt }) => [handleBox(at), ...(turnAt ? [handleBox(turnAt)] : [])])];
     return cut.map((line) => {
       if (line.kind === 'clip') return nothing; // their words stand in the head
       const place = namePlace(line.cut, line.words, pane, taken);

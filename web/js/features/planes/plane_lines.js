@@ -97,8 +97,8 @@ export function keptPart(all, box) {
   return polygon;
 }
 
-/** Boxes taken in every slice pane: the letters in the middle of the edges, scale bar and window at the foot; with a legend, that too. */
-export function takenIn([width, height], hasLegend) {
+/** Boxes taken in every slice pane: the letters in the middle of the edges, scale bar and window at the foot. */
+export function takenIn([width, height]) {
   const around = (x, y) => ({ x: x - letterHalf, y: y - letterHalf, width: 2 * letterHalf, height: 2 * letterHalf });
   return [
     around(0, height / 2),
@@ -106,7 +106,6 @@ export function takenIn([width, height], hasLegend) {
     around(width / 2, 0),
     around(width / 2, height),
     { x: 0, y: height - footPx, width, height: footPx },
-    ...(hasLegend ? [{ x: 0, y: 0, width: width / 2, height: height / 2 }] : []),
   ];
 }
 

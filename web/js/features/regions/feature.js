@@ -2,13 +2,14 @@
 import { nothing } from '../../../lib/lit-html.js';
 import { computed, effect, signal, untracked } from '../../../lib/signals-core.js';
 import { ownRegions } from '../../room/identity.js';
-import { later } from '../../parts/lazy.js';
+import { known, later } from '../../parts/lazy.js';
 import { askRefusals, liveShape, shapeNow } from './asking.js';
 import { Refusals } from './refusals.js';
 import { regionRows, regionTools } from './region_rows.js';
 import { say } from './words.js';
 
 const blocks = later(() => import('./later_blocks.js'));
+const strips = later(() => import('./picture_strips.js'), 'js/parts/strip.css');
 const hierarchyWords = { file: say.fromFile, derived: say.derived, none: '' };
 
 /** Comparing representations begins with what is loaded for it. @returns {() => void} stops */
@@ -22,6 +23,15 @@ function compareLater(world) {
     wait();
     stop?.();
   };
+}
+
+/** The strips of the check, and of regions that a picture leaves out; most rooms have neither. */
+function stripsOf(world) {
+  const { room, refused } = world;
+  const isLeftOut = () =>
+    [refused.value, ...room.views.map((view) => view.missing.value.reasons)].some((reasons) => Object.keys(reasons).length);
+  if (!room.scene.value || !room.plan.value || !(room.scene.value.check.visible || isLeftOut())) return nothing;
+  return known(strips)?.pictureStrips(world) ?? nothing;
 }
 
 /** @type {import('../index.js').Feature} */
@@ -50,6 +60,7 @@ export const regions = {
     },
   ],
   kinds: { region: 'regions' },
+  legend: stripsOf,
   blocks,
   isSoon: true,
   dialogs: ['figures'],

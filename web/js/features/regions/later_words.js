@@ -3,6 +3,15 @@ import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('regions.later', {
   region: 'Region {region}',
+  checkColours: 'Colours of the check',
+  beyond: 'surface beyond univels',
+  within: 'univels beyond surface',
+  notChecked: 'Not checked: {regions}',
+  notNurbs: 'Not shown as NURBS: {regions}',
+  notDrawn: 'Not drawn: {regions}',
+  others: 'others',
+  whyNot: 'Why {region} is not shown',
+  why: 'Why?',
   inside: 'in {region}',
   volume: 'Volume',
   volumeIs: '{volume}, {count} univels',
