@@ -251,7 +251,7 @@ RENDER_RUN = $(if $(findstring thread,$(SAN)),$(RENDER_THREADS:%=$(B)/render/tes
 PARALLEL := $(shell nproc)
 TWICE := $(shell echo $$((2 * $(PARALLEL))))
 # UNITS=whole: without the bounds that keep the units of `make test` short; the sanitizers run the whole
-.PHONY: test-unit test-render test-faults test-api test-web test-long test-install test test-deep lint
+.PHONY: test-unit test-render test-render-long test-faults test-api test-web test-long test-install test test-deep lint
 test-unit: $(UNIT_RUN)
 	$(Q)$(if $(SAN),UNITS=whole) RUNNER="$(RUNNER)" PARALLEL=$(if $(SAN),$(PARALLEL),$(TWICE)) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
 test-render: $(RENDER_RUN)
@@ -259,7 +259,13 @@ test-render: $(RENDER_RUN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
-# Long ones: LONG_NODE has files of which test-api and test-web run a part (LONG_TESTS=rest: what they leave out), DEEP_NODE those that they leave
+# Programs that make test leaves out. test-deep has these units under the sanitizers, which hammer at processes, sockets and archives or wait for many
+# seconds; and these pictures, of every back end against the others, from the same build as make test.
+DEEP_UNIT := $(patsubst %,$(B)/unit/test_%,cache_quota fleet_hostile fleet_restarts fleet_silence tls_hammer)
+DEEP_RENDER := $(patsubst %,$(B)/render/test_%,caps cut_agreement occlusion representations wash_agree)
+test-render-long: $(DEEP_RENDER)
+	$(Q)PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,render-long)" $(DEEP_RENDER)
+# Long ones, from a queue of their own: LONG_NODE has files of which test-api and test-web run a part (LONG_TESTS=rest: what they leave out), DEEP_NODE those that they leave
 # out whole. Each part of the page and of the interface has tests in what they run: whole_meeting.test.mjs has one of each thing that people do together.
 LONG_TESTS ?= 1
 DEEP_NODE := tests/api/missing.test.mjs tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,daemon_restart guide meeting notes planner_hour pointers record recording restart roster saved)
@@ -274,8 +280,8 @@ PAGE_UNITS := $(sort $(shell find tests/web/unit -name '*.test.mjs'))
 test-queue: all demo $(unit_BIN) $(render_BIN) $(faults_BIN)
 	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
 	SLOTS=$(TWICE) $(NODE) tests/queue.mjs web:$$(($(PARALLEL) + 1)) $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs))) -- api $(API_NODE) \
-	    -- faults:$(PARALLEL) $(faults_BIN) -- lint:1 tests/lint.sh -- install:1 tests/install.sh -- render:$(PARALLEL) $(render_BIN) \
-	    -- unit $(unit_BIN) -- page-units $(PAGE_UNITS) && [ $$alone = 0 ]
+	    -- faults:$(PARALLEL) $(faults_BIN) -- lint:1 tests/lint.sh -- install:1 tests/install.sh -- render:$(PARALLEL) $(filter-out $(DEEP_RENDER),$(render_BIN)) \
+	    -- unit $(filter-out $(DEEP_UNIT),$(unit_BIN)) -- page-units $(PAGE_UNITS) && [ $$alone = 0 ]
 # What takes longest of the units is for make test.
 SLOW_UNITS := api_routes gamma gamma_oracle plan_jobs recording replay room_following room_recording smooth smooth_slices surface_oracle unpack
 check: all $(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(unit_BIN))
@@ -287,7 +293,9 @@ test-api: all demo
 test-web: all demo
 	$(Q)TEST_CONCURRENCY=$$(($(PARALLEL) + 1)) tests/run_node.sh web $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs)) $(PAGE_UNITS))
 test-long: all demo
-	$(Q)LONG_TESTS=$(LONG_TESTS) TEST_CONCURRENCY=$(PARALLEL) SUITE_SECONDS=2400 tests/run_node.sh long $(DEEP_NODE) $(LONG_NODE)
+	$(Q)set -o pipefail; LONG_TESTS=$(LONG_TESTS) LAST_RUN=long SUITE_SECONDS=2400 SLOTS=$$(($(PARALLEL) + 1)) $(NODE) tests/queue.mjs \
+	    long-web $(filter tests/web/%,$(DEEP_NODE) $(LONG_NODE)) -- long-api $(filter tests/api/%,$(DEEP_NODE) $(LONG_NODE)) \
+	    | grep --line-buffered -vE '^[^: ]+: [0-9]+ passed, [0-9]+ failed, [0-9]+ skipped$$'
 test-install: all demo
 	$(Q)tests/install.sh
 lint: $(GEN_STAMP) node_modules/.stamp $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))

@@ -61,6 +61,7 @@ deep)
     suite unit-thread "$jobs" SAN=thread test-unit
     suite render-address-undefined "$jobs" SAN=address,undefined test-render
     suite render-thread "$jobs" SAN=thread test-render
+    suite render-long "$jobs" test-render-long
     suite faults "$jobs" SAN=address,undefined FAULTS=whole test-faults
     suite long test-long LONG_TESTS=rest
     suite firefox test-firefox

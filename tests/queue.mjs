@@ -2,14 +2,15 @@
 //   node tests/queue.mjs SUITE[:MOST] ITEM... -- SUITE[:MOST] ITEM... -- ...
 // An item is a file of node's test runner (*.mjs, by run_node.sh), a script (*.sh), or a test program (by run_programs.sh). MOST items of a suite run at once.
 // SLOTS items run at once in all. What took longest in the last run starts first; without a last run, the suites in their order and large files first.
-// Each file of the page gets a browser that is used again by the next one (BEAMROOM_BROWSER, tests/web/browser.mjs).
+// LAST_RUN=long: these are the long tests, whose times are kept apart. Each file of the page gets a browser that is used again by the next one (BEAMROOM_BROWSER, tests/web/browser.mjs).
 // Each suite's output stays in build/test/SUITE.log. Ends with "total SUITE: N passed, N failed, N skipped" for each suite.
 import { appendFileSync, existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { spawn } from 'node:child_process';
 import { basename } from 'node:path';
 
 const folder = 'build/test';
-const lastRun = `${folder}/seconds.json`;
+const isLong = process.env.LAST_RUN === 'long';
+const lastRun = `${folder}/${isLong ? 'long-' : ''}seconds.json`;
 const slots = Number(process.env.SLOTS ?? 4);
 
 const suites = new Map();
@@ -21,13 +22,19 @@ for (const words of process.argv.slice(2).join('\n').split('\n--\n')) {
 mkdirSync(folder, { recursive: true });
 const known = existsSync(lastRun) ? JSON.parse(readFileSync(lastRun, 'utf8')) : {};
 /** Seconds of the items that take long: a clean checkout has no last run, and one of these started last would run alone. */
-const usual = {
-  30: `web/whole_meeting api/idle web/page web/start api/connections web/watch web/beam_draft unit/test_fleet_silence api/ws web/dose web/views`,
-  20: `api/dvh api/hostile web/image faults/test_draw web/clip web/sizes web/beam_eye unit/test_unpack web/pointed web/regions web/display web/touch
-    unit/test_fleet_restarts api/cases api/audit api/upload api/replayed_meeting render/test_pauses tests/lint`,
-  12: `web/charts render/test_caps web/measure render/test_wash_agree web/layout web/snapshot render/test_representations api/cli web/undo web/tracks
-    unit/test_plan_data render/test_beam_slice api/http render/test_occlusion api/kept api/display`,
-};
+const usual = isLong
+  ? {
+      100: `web/planner_hour api/replayed_meeting web/guide web/meeting`,
+      60: `web/layout web/language web/axe web/charts api/slow web/beam_eye web/cases api/rest`,
+      30: `web/start web/measure web/image web/beam_draft web/watch api/kills api/missing web/legend web/roster web/display`,
+    }
+  : {
+      30: `web/whole_meeting api/idle web/dose web/start api/connections tests/lint web/views faults/test_draw api/ws`,
+      20: `web/page api/tls web/display web/patient web/sign_in api/rights_matrix api/hostile api/audit web/pointed api/kept render/test_beam_slice
+        unit/test_plan_data web/watch render/test_pauses unit/test_unpack`,
+      12: `web/image web/clip web/shell api/identity api/kept_figures api/dvh web/touch web/layout web/snapshot api/http unit/test_tls faults/test_upload
+        api/display api/acts web/axe web/regions web/beam_eye web/tracks web/charts web/undo`,
+    };
 const usualSeconds = new Map(
   Object.entries(usual).flatMap(([seconds, names]) => names.split(/\s+/).map((name) => [name, Number(seconds)])),
 );
@@ -66,12 +73,12 @@ const commandOf = ({ suite, path }) =>
 
 async function run(item) {
   const { suite, path } = item;
-  const browser = suite.name === 'web' && !path.includes('/unit/') ? await takeBrowser() : null;
+  const browser = /web\/[^/]*$/.test(path) ? await takeBrowser() : null;
   const start = performance.now();
   const [program, ...args] = commandOf(item);
   const child = spawn(program, args, {
     stdio: ['ignore', 'pipe', 'pipe'],
-    env: { ...process.env, SUITE_SECONDS: '400', ...(browser && { BEAMROOM_BROWSER: browser.wsEndpoint() }) },
+    env: { ...process.env, SUITE_SECONDS: process.env.SUITE_SECONDS ?? '400', ...(browser && { BEAMROOM_BROWSER: browser.wsEndpoint() }) },
   });
   let output = '';
   for (const stream of [child.stdout, child.stderr])
