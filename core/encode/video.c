@@ -29,7 +29,7 @@ static bool refuse(struct video *video, const char *what, struct error *err)
     return error_set(err, ERROR_MEMORY, "%s: %.80s", what, detail ? detail : "libvpx gave no reason");
 }
 
-static bool start(struct video *video, int quality, struct error *err)
+static bool start(struct video *video, int quality, int n_threads, struct error *err)
 {
     vpx_codec_enc_cfg_t settings;
     if (vpx_codec_enc_config_default(vpx_codec_vp9_cx(), &settings, 0) != VPX_CODEC_OK)
@@ -38,7 +38,7 @@ static bool start(struct video *video, int quality, struct error *err)
     settings.g_w = (unsigned)video->width_px;
     settings.g_h = (unsigned)video->height_px;
     settings.g_timebase = (vpx_rational_t){ 1, video->fps };
-    settings.g_threads = (unsigned)parallel_cores();
+    settings.g_threads = (unsigned)(n_threads > 0 ? n_threads : parallel_cores());
     settings.g_lag_in_frames = 0; /* a picture in, a frame out */
     settings.rc_end_usage = VPX_Q;
     settings.rc_min_quantizer = settings.rc_max_quantizer = q;
@@ -53,7 +53,7 @@ static bool start(struct video *video, int quality, struct error *err)
            refuse(video, "the encoder does not start", err);
 }
 
-struct video *video_create(int width_px, int height_px, int fps, int quality, struct error *err)
+struct video *video_create(int width_px, int height_px, int fps, int quality, int n_threads, struct error *err)
 {
     if (width_px < 16 || height_px < 16 || width_px > VIDEO_MAX_SIDE_PX || height_px > VIDEO_MAX_SIDE_PX ||
         width_px % 2 || height_px % 2) {
@@ -75,10 +75,15 @@ struct video *video_create(int width_px, int height_px, int fps, int quality, st
         video->frames && vpx_img_alloc(&video->picture, VPX_IMG_FMT_I420, (unsigned)width_px, (unsigned)height_px, 32);
     if (video->frames && !has_picture)
         (void)error_set(err, ERROR_MEMORY, "no memory for the pictures of a film");
-    if (has_picture && start(video, quality, err))
+    if (has_picture && start(video, quality, n_threads, err))
         return video;
     video_destroy(video);
     return NULL;
+}
+
+size_t video_bytes(const struct video *video)
+{
+    return video->n_bytes;
 }
 
 void video_destroy(struct video *video)

@@ -19,6 +19,7 @@ void picture_destroy(struct picture *picture)
         return;
     snapshot_unref(picture->request.snapshot);
     pipeline_annotation_destroy(picture->request.annotation);
+    film_unref(picture->request.film);
     image_destroy(picture->image);
     free(picture->frame.picture.bytes);
     for (int i = 0; i < IMAGE_N_REDUCED; i++)
@@ -48,12 +49,23 @@ static bool annotate(struct picture *picture, struct error *err)
     return annotated != NULL;
 }
 
+static bool add_to_film(struct picture *picture)
+{
+    const struct pipeline_request *request = &picture->request;
+    struct pipeline_frame *frame = &picture->frame;
+    int size_px[2];
+    return film_add(request->film, picture->image, request->n_film_times, &frame->error) &&
+           (!request->ends_film || film_finish(request->film, &frame->picture, size_px, &frame->error));
+}
+
 static bool compress(struct encoder *encoder, struct picture *picture)
 {
     const struct pipeline_request *request = &picture->request;
     struct pipeline_frame *frame = &picture->frame;
     if (request->annotation && !annotate(picture, &frame->error))
         return false;
+    if (request->film)
+        return add_to_film(picture);
     return request->annotation && request->encode.codec == ENCODE_PNG
                ? encode_png_with_text(picture->image, request->annotation->keyword, request->annotation->text,
                                       &frame->picture, &frame->error)
@@ -89,7 +101,7 @@ static void compress_marked(struct encoder *encoder, struct picture *picture)
 
 void picture_compress(struct encoder *encoder, struct picture *picture)
 {
-    if (!compress(encoder, picture))
+    if (!compress(encoder, picture) || picture->request.film)
         return;
     compress_reduced(encoder, picture);
     compress_marked(encoder, picture);

@@ -15,7 +15,7 @@
 #include "core/pipeline/picture.h"
 
 /* Small pictures are compressed by one thread and large ones by another, so that a large one, which takes ten times as
- * long, holds up none. A PNG takes as long as a large JPEG. */
+ * long, holds up none. A PNG takes as long as a large JPEG, and so does a frame of a film. */
 enum { ENCODE_SMALL, ENCODE_LARGE, N_ENCODE_THREADS, SMALL_MAX_PX = 2500000 };
 /* Drawn pictures that may wait for an encode thread: these keep it busy after the one it compresses; more would only
  * add delay. */
@@ -105,8 +105,8 @@ static bool send(struct pipeline *pipeline, const struct message *message)
 static struct encode_thread *encode_thread_of(struct pipeline *pipeline, const struct picture *picture)
 {
     const struct render_options *options = &picture->request.render;
-    bool is_large =
-        picture->request.encode.codec == ENCODE_PNG || (int64_t)options->width_px * options->height_px > SMALL_MAX_PX;
+    bool is_large = picture->request.film || picture->request.encode.codec == ENCODE_PNG ||
+                    (int64_t)options->width_px * options->height_px > SMALL_MAX_PX;
     return &pipeline->encode_threads[is_large ? ENCODE_LARGE : ENCODE_SMALL];
 }
 

@@ -6,6 +6,7 @@
 #include "core/annotate/describe.h"
 #include "core/base/image_reduce.h"
 #include "core/encode/encode.h"
+#include "core/encode/film.h"
 #include "core/render/render.h"
 
 struct pipeline;
@@ -31,7 +32,11 @@ struct pipeline_request {
     struct encode_options encode;           /* of the reduced pictures, too */
     bool is_reduced[IMAGE_N_REDUCED];       /* the reduced pictures that are wanted; of an annotated one none is made */
     struct pipeline_annotation *annotation; /* owned, taken with the snapshot; NULL: a plain picture */
-    const char *mark; /* words for a further copy of the picture (annotate_mark); a constant; NULL: no such copy */
+    struct film *film; /* one reference, taken with the snapshot: the picture is added to it and not compressed; NULL: a
+                          picture by itself. One picture of a film at a time */
+    int n_film_times;  /* frames of the film that the picture stands for */
+    bool ends_film;    /* frame.picture is the film, WebM; before its end it is empty */
+    const char *mark;  /* words for a further copy of the picture (annotate_mark); a constant; NULL: no such copy */
 };
 
 struct pipeline_frame {
@@ -65,9 +70,9 @@ NODISCARD struct pipeline *pipeline_create(enum render_back_end back_end, bool s
 /* Limit on the images of all pictures that are begun and not yet compressed; a single image may be larger. */
 #define PIPELINE_MAX_IMAGE_BYTES ((uint64_t)256 << 20)
 enum { PIPELINE_MAX_WAITING = 448 }; /* two of each of 200 people, and some */
-/* Takes request->snapshot and request->annotation, on failure too. Pictures of one source that are alike in size and
- * codec, and all moving or all stills, are delivered in order. Nothing is dropped, so the caller decides what is worth
- * a request.
+/* Takes request->snapshot, request->annotation and request->film, on failure too. Pictures of one source that are alike
+ * in size and codec, and all moving or all stills, are delivered in order. Nothing is dropped, so the caller decides
+ * what is worth a request.
  *
  *   errors   ERROR_LIMIT  PIPELINE_MAX_WAITING requests are not begun yet
  *   thread   any; never blocks */

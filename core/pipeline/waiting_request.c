@@ -27,6 +27,7 @@ void waiting_request_destroy(struct waiting_request *waiting)
         return;
     snapshot_unref(waiting->request.snapshot);
     pipeline_annotation_destroy(waiting->request.annotation);
+    film_unref(waiting->request.film);
     free(waiting->wants);
     free(waiting);
 }

@@ -8,14 +8,14 @@
 #include "core/render/visible/visible.h"
 
 struct waiting_request {
-    struct pipeline_request request; /* owned, with its snapshot and annotation */
+    struct pipeline_request request; /* owned, with its snapshot, annotation and film */
     const _Atomic uint64_t *wanted;  /* holds the request's id as long as the picture is wanted; NULL: always wanted */
     bool is_built;                   /* every shape was built, or tried */
     struct shape_want *wants;        /* [n_wants], owned: the shapes that the picture needs */
     size_t n_wants;
     bool has_isodoses; /* the picture also needs isodose surfaces, or that of a coverage */
 };
-/* Takes request->snapshot and request->annotation. */
+/* Takes request->snapshot, request->annotation and request->film. */
 struct waiting_request *waiting_request_create(const struct pipeline_request *request);
 void waiting_request_destroy(struct waiting_request *waiting);
 /* Builds the shapes, several at once. A failure is not reported: the render thread meets it again. Begins no further

@@ -132,6 +132,24 @@ void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_cam
     }
 }
 
+static struct vec3 turned(struct vec3 from, double angle)
+{
+    return vec3(from.x * cos(angle) - from.y * sin(angle), from.x * sin(angle) + from.y * cos(angle), from.z);
+}
+
+void camera_turn(const struct plan *plan, struct view *view, double turn_deg)
+{
+    struct scene_camera home, *camera = &view->camera;
+    camera_home(plan, SCENE_KIND_3D, &home);
+    const double angle = turn_deg * MATH_PI / 180;
+    const struct vec3 eye = camera->has_position_mm ? camera->position_mm : home.position_mm;
+    if (!camera->has_target_mm)
+        camera->target_mm = home.target_mm;
+    camera->position_mm = vec3_add(camera->target_mm, turned(vec3_sub(eye, camera->target_mm), angle));
+    camera->up = turned(camera->has_up ? camera->up : home.up, angle);
+    camera->has_position_mm = camera->has_target_mm = camera->has_up = true;
+}
+
 /* A slice pane: parallel projection at right angles to its plane, the target on the plane. Returns millimetres across
  * the smaller side of the picture. */
 static double resolve_pane(const struct plan *plan, const struct view *view, const struct plane *plane,

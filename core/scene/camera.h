@@ -11,6 +11,10 @@
  * of the highest of the three others. */
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
 
+/* Turns the camera of a 3-D view about the axis to superior through its target, positive towards the patient's left
+ * from the front. A place that the view does not give is that of the home camera, before the turn. */
+void camera_turn(const struct plan *plan, struct view *view, double turn_deg);
+
 /* A view's camera, resolved: unit axes in patient space and the projection. */
 struct camera {
     struct vec3 eye_lps_mm, target_lps_mm;

@@ -10,7 +10,7 @@
 #include "core/base/clock.h"
 #include "core/base/file_write.h"
 #include "core/base/mem.h"
-#include "core/encode/video.h"
+#include "core/encode/film.h"
 #include "core/render/visible/visible.h"
 #include "core/scene/camera.h"
 #include "server/cli/command.h"
@@ -341,88 +341,21 @@ static bool draw_one(struct drawing *drawing, struct error *err)
 
 /* ---- a film ----------------------------------------------------------------------------------------------------- */
 
-static struct vec3 turned(struct vec3 from, double angle)
-{
-    return vec3(from.x * cos(angle) - from.y * sin(angle), from.x * sin(angle) + from.y * cos(angle), from.z);
-}
-
-static void put_vec3(cJSON *camera, const char *name, struct vec3 value)
-{
-    cJSON_DeleteItemFromObjectCaseSensitive(camera, name);
-    json_add(camera, name, cJSON_CreateDoubleArray((double[]){ value.x, value.y, value.z }, 3));
-}
-
-/* The view after a part of the turn, about the axis to superior through what it looks at. NULL with err. */
-static cJSON *view_on_orbit(const struct drawing *drawing, double part, struct error *err)
-{
-    struct view view = { 0 };
-    struct problem problem = { 0 };
-    struct scene_camera home;
-    if (!view_read(drawing->view, &view, &problem))
-        return refuse_problem("view", &problem, err), NULL;
-    if (view.kind != SCENE_KIND_3D) {
-        view_finish(&view);
-        (void)error_set(err, ERROR_RANGE, "--orbit turns a view of the kind 3d");
-        return NULL;
-    }
-    camera_home(derive_plan(drawing->derived), SCENE_KIND_3D, &home);
-    const struct scene_camera *camera = &view.camera;
-    struct vec3 eye = camera->has_position_mm ? camera->position_mm : home.position_mm,
-                target = camera->has_target_mm ? camera->target_mm : home.target_mm,
-                up = camera->has_up ? camera->up : home.up;
-    const double angle = 2 * MATH_PI * part;
-    cJSON *turned_view = cJSON_Duplicate(drawing->view, true), *json = cJSON_CreateObject();
-    put_vec3(json, "position_mm", vec3_add(target, turned(vec3_sub(eye, target), angle)));
-    put_vec3(json, "target_mm", target);
-    put_vec3(json, "up", turned(up, angle));
-    cJSON *patch = cJSON_CreateObject();
-    json_add(patch, "camera", json);
-    cJSON *changed = view_document_patch(turned_view, patch, &problem);
-    if (!changed)
-        refuse_problem("view", &problem, err);
-    cJSON_Delete(patch);
-    cJSON_Delete(turned_view);
-    view_finish(&view);
-    return changed;
-}
-
-/* The picture of the film's size, of which each side is even; below and at the right it gets the ground's colour. */
-static struct image *fit(const struct image *image, int width_px, int height_px, struct error *err)
-{
-    struct image *even = NULL;
-    if (image->width_px > width_px || image->height_px > height_px)
-        (void)error_set(err, ERROR_RANGE, "the caption needs more lines in a part of the turn: choose a wider picture");
-    else
-        even = image_create(width_px, height_px, err);
-    for (int y = 0; even && y < height_px; y++)
-        for (int x = 0; x < width_px; x++) {
-            const int row = y < image->height_px ? y : image->height_px - 1,
-                      column = x < image->width_px ? x : image->width_px - 1;
-            memcpy(even->rgba + 4 * ((size_t)y * (size_t)width_px + (size_t)x),
-                   image->rgba + 4 * ((size_t)row * (size_t)image->width_px + (size_t)column), 4);
-        }
-    return even;
-}
-
-/* Adds a picture; the first one begins the film. */
-static bool add_picture(struct drawing *drawing, double part, struct video **video, int size_px[2], struct error *err)
+/* Adds the picture after a part of the turn about the axis to superior through what the view looks at. */
+static bool add_picture(struct drawing *drawing, double part, struct film *film, struct error *err)
 {
     char *text = NULL;
-    cJSON *view = view_on_orbit(drawing, part, err);
-    struct snapshot *snapshot = view ? make_snapshot(drawing, view, err) : NULL;
-    struct image *image = snapshot ? draw_picture(drawing, snapshot, view, &text, err) : NULL;
-    if (image && !*video) {
-        size_px[0] = image->width_px + image->width_px % 2;
-        size_px[1] = image->height_px + image->height_px % 2;
-        *video = video_create(size_px[0], size_px[1], drawing->arguments->fps, drawing->arguments->quality, err);
+    struct snapshot *snapshot = make_snapshot(drawing, drawing->view, err);
+    bool is_added = snapshot && (snapshot->view.kind == SCENE_KIND_3D ||
+                                 error_set(err, ERROR_RANGE, "--orbit turns a view of the kind 3d"));
+    if (is_added)
+        camera_turn(snapshot->plan, &snapshot->view, 360 * part);
+    struct image *image = is_added ? draw_picture(drawing, snapshot, drawing->view, &text, err) : NULL;
+    if (image && film_n_pictures(film) == 0)
         print_missing(snapshot);
-    }
-    struct image *even = image && *video ? fit(image, size_px[0], size_px[1], err) : NULL;
-    const bool is_added = even && video_add(*video, even, err);
-    image_destroy(even);
+    is_added = image && film_add(film, image, 1, err);
     image_destroy(image);
     snapshot_unref(snapshot);
-    cJSON_Delete(view);
     free(text);
     return is_added;
 }
@@ -431,20 +364,22 @@ static bool draw_orbit(struct drawing *drawing, struct error *err)
 {
     const int64_t start_us = clock_now_us();
     const int n = (int)fmax(1, round(drawing->arguments->orbit_s * drawing->arguments->fps));
-    struct video *video = NULL;
-    struct encoded film = { 0 };
+    const struct film_options options = { .fps = drawing->arguments->fps, .quality = drawing->arguments->quality };
+    struct film *film = film_create(&options, err);
+    struct encoded encoded = { 0 };
     int size_px[2] = { 0, 0 };
-    bool ok = true;
+    bool ok = film != NULL;
     for (int i = 0; ok && i < n; i++)
-        ok = add_picture(drawing, (double)i / n, &video, size_px, err);
-    ok = ok && video_finish(video, &film, err) && file_write(drawing->arguments->out, film.bytes, film.n_bytes, err);
+        ok = add_picture(drawing, (double)i / n, film, err);
+    ok = ok && film_finish(film, &encoded, size_px, err) &&
+         file_write(drawing->arguments->out, encoded.bytes, encoded.n_bytes, err);
     if (ok) {
         char words[64];
         snprintf(words, sizeof words, "%d pictures, ", n);
         print_done(drawing, size_px[0], size_px[1], words, start_us);
     }
-    free(film.bytes);
-    video_destroy(video);
+    free(encoded.bytes);
+    film_unref(film);
     return ok;
 }
 

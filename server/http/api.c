@@ -9,6 +9,7 @@
 #include "core/base/mem.h"
 #include "server/http/api_access.h"
 #include "server/http/api_acts.h"
+#include "server/http/api_films.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/http/api_questions.h"
@@ -49,6 +50,8 @@ static const struct {
     { "POST", "/api/v1/plans/{plan}/close", api_plan_close },
     { "GET", "/api/v1/jobs/{job}", api_job },
     { "DELETE", "/api/v1/jobs/{job}", api_job_cancel },
+    { "GET", "/api/v1/jobs/{job}/video", api_job_film },
+    { "POST", "/api/v1/plans/{plan}/video", api_plan_film },
     { "POST", "/api/v1/plans/{plan}/render", api_plan_render },
     { "GET", "/api/v1/plans/{plan}/regions/{region}/surface", api_plan_surface },
     { "GET", "/api/v1/rooms", api_rooms },
@@ -73,6 +76,7 @@ static const struct {
     { "DELETE", "/api/v1/rooms/{room}/recordings/{recording}", api_room_recording_delete },
     { "GET", "/api/v1/rooms/{room}/recordings/{recording}/state", api_room_recording_state },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
+    { "POST", "/api/v1/rooms/{room}/video", api_room_film },
     { "POST", "/api/v1/rooms/{room}/exports", api_room_export },
     { "GET", "/api/v1/rooms/{room}/links", api_room_links },
     { "POST", "/api/v1/rooms/{room}/links", api_room_link_new },
@@ -124,6 +128,7 @@ struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_b
 
 void api_destroy(struct api *api)
 {
+    api_films_destroy(api);
     api_rates_destroy(api->rates);
     free(api);
 }

@@ -220,7 +220,7 @@ static bool check_job(struct api *api, struct call *call, const struct access_ro
         plan.subject.room_role = ACCESS_ROLE_PLANNER;
     if (job && access_check(api->rights->access, &call->identity, need->right, &plan.subject)) {
         const struct access_route ends_for_all = { .right = ACCESS_CLOSE };
-        return call->method != CALL_DELETE || job->upload ||
+        return call->method != CALL_DELETE || job->upload || job->film ||
                api_access_to_plan(api, call, ends_for_all.right, job->plan_id) || refuse_role(call, &ends_for_all);
     }
     api_job_answer_missing(call);

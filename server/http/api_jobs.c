@@ -6,6 +6,7 @@
 
 #include "core/base/mem.h"
 #include "server/auth/auth.h"
+#include "server/http/api_films.h"
 #include "server/http/api_handlers.h"
 
 static void update_upload(struct api *api, struct api_job *job)
@@ -33,6 +34,23 @@ static void update_upload(struct api *api, struct api_job *job)
         job->problem = *upload.problem;
 }
 
+static void update_film(const struct api *api, struct api_job *job)
+{
+    struct api_film_state film;
+    if (!api_film_find(api, job->film, &film))
+        return;
+    job->state = film.state;
+    job->percent = 100.0 * film.n_done / film.n_pictures;
+    if (film.state == JOB_QUEUED)
+        (void)snprintf(job->phase, sizeof job->phase, "other films are made first");
+    else if (film.state == JOB_RUNNING)
+        (void)snprintf(job->phase, sizeof job->phase, "picture %d of %d", film.n_done + 1, film.n_pictures);
+    else
+        job->phase[0] = 0;
+    if (film.state == JOB_FAILED)
+        job->problem = *film.problem;
+}
+
 static cJSON *job_document(const struct api_job *job)
 {
     static const char *const words[] = { "queued", "running", "done", "failed", "cancelled" };
@@ -55,8 +73,11 @@ static void update_job(struct api *api, struct api_job *job)
     struct fleet_plan plan;
     if (job->state != JOB_RUNNING && job->state != JOB_QUEUED)
         return;
-    if (job->upload) {
-        update_upload(api, job);
+    if (job->upload || job->film) {
+        if (job->upload)
+            update_upload(api, job);
+        else
+            update_film(api, job);
         return;
     }
     if (!fleet_plan_find(net_fleet(api->net), job->plan_id, &plan)) {
@@ -100,6 +121,7 @@ static void update_job(struct api *api, struct api_job *job)
 void api_jobs_update(struct api *api)
 {
     size_t first = api->n_jobs > API_MAX_JOBS ? api->n_jobs - API_MAX_JOBS : 0;
+    api_films_go_on(api);
     for (size_t n = first; n < api->n_jobs; n++)
         update_job(api, &api->jobs[n % API_MAX_JOBS]);
 }
@@ -107,6 +129,8 @@ void api_jobs_update(struct api *api)
 struct api_job *api_job_create(struct api *api, const struct call *call, const char *kind)
 {
     struct api_job *job = &api->jobs[api->n_jobs % API_MAX_JOBS];
+    if (job->film)
+        api_film_forget(api, job->film);
     memset(job, 0, sizeof *job);
     api->n_jobs++;
     (void)snprintf(job->id, sizeof job->id, "%s-%zu", kind, api->n_jobs);
@@ -164,6 +188,9 @@ void api_job_cancel(struct api *api, struct call *call)
         return;
     if (job->upload) {
         fleet_upload_cancel(net_fleet(api->net), job->upload);
+        update_job(api, job);
+    } else if (job->film) {
+        api_film_cancel(api, job->film);
         update_job(api, job);
     } else if (job->state == JOB_RUNNING) {
         job->is_cancel_requested = true;

@@ -1,11 +1,11 @@
 #pragma once
-/* Jobs: what takes longer than a call (opening a plan, an upload), its progress and its end. Internal to server/http;
- * net thread. */
+/* Jobs: what takes longer than a call (opening a plan, an upload, a film), its progress and its end. Internal to
+ * server/http; net thread. */
 #include "server/http/api_state.h"
 
 /* Brings the states of running jobs up to date with their plans and uploads. */
 void api_jobs_update(struct api *api);
-/* Makes a job of the caller's; the oldest is forgotten. kind: "open" or "upload". */
+/* Makes a job of the caller's; the oldest is forgotten. kind: "open", "upload" or "film". */
 struct api_job *api_job_create(struct api *api, const struct call *call, const char *kind);
 /* NULL: there is none, or not any more. */
 struct api_job *api_job_find(struct api *api, const char *id);

@@ -19,7 +19,8 @@ enum api_job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLE
 struct api_job {
     char id[40], plan_id[64];         /* plan_id: "" until an upload is done */
     char user[IDENTITY_MAX_USER + 1]; /* who made it; "": who has not signed in */
-    const char *kind;                 /* "open", "upload" */
+    const char *kind;                 /* "open", "upload", "film" */
+    uint64_t film;                    /* number of the film that it makes; 0: none */
     uint64_t upload;                  /* the fleet's number of the upload; 0: the job opens a plan */
     uint32_t opening;                 /* which opening of the plan: opening of struct fleet_plan */
     enum api_job_state state;
@@ -38,10 +39,12 @@ struct api {
     const struct plan_rights *rights; /* of the net */
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
-    struct api_picture *pictures;  /* requested and not yet answered */
-    size_t n_waiting_for_pictures; /* calls that these answer */
-    uint64_t n_pictures;           /* ever requested */
-    struct api_display *displays;  /* screens that look at rooms */
+    struct api_film *films;              /* the newest first */
+    uint64_t n_films, n_film_beginnings; /* ever made; ever begun */
+    struct api_picture *pictures;        /* requested and not yet answered */
+    size_t n_waiting_for_pictures;       /* calls that these answer */
+    uint64_t n_pictures;                 /* ever requested */
+    struct api_display *displays;        /* screens that look at rooms */
     struct api_listener *listeners;
     atomic_int n_printing;           /* PDFs under way */
     atomic_bool is_printing_stopped; /* by http_stop_printing */

@@ -11,6 +11,8 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/render/visible/visible.h"
+#include "core/scene/camera.h"
+#include "server/renderer/films.h"
 #include "server/wire/document.h"
 #include "server/wire/snapshot_record.h"
 
@@ -24,13 +26,15 @@ struct picture_request {
     uint32_t scene_revision;
     struct snapshot *snapshot; /* a reference */
     enum surface_detail detail;
-    bool is_caption_apart;
+    bool is_caption_apart, ends_film;
+    int64_t film; /* number of the film that the picture is added to; 0: none */
 };
 
 struct pictures {
     struct pictures_options options;
     struct picture_request requests[MAX_REQUESTS]; /* not answered yet */
     struct built_shapes *built_shapes;
+    struct films *films;
     struct problem gl_problem; /* when graphics did not start */
 };
 
@@ -41,6 +45,7 @@ struct pictures *pictures_create(const struct pictures_options *options)
     for (size_t i = 0; i < MAX_REQUESTS; i++)
         atomic_init(&pictures->requests[i].id, NO_REQUEST);
     pictures->built_shapes = built_shapes_create();
+    pictures->films = films_create();
     return pictures;
 }
 
@@ -49,6 +54,7 @@ void pictures_destroy(struct pictures *pictures)
     if (!pictures)
         return;
     built_shapes_destroy(pictures->built_shapes);
+    films_destroy(pictures->films);
     for (size_t i = 0; i < MAX_REQUESTS; i++)
         snapshot_unref(pictures->requests[i].snapshot);
     free(pictures);
@@ -69,8 +75,9 @@ static void refuse_busy(const struct pictures *pictures, int64_t id)
     link_send_problem(pictures->options.link, id, &problem);
 }
 
-static void end_request(struct picture_request *request)
+static void end_request(struct pictures *pictures, struct picture_request *request, bool is_made)
 {
+    films_end_picture(pictures->films, request->film, is_made, request->ends_film);
     atomic_store(&request->id, NO_REQUEST);
     snapshot_unref(request->snapshot);
     request->snapshot = NULL;
@@ -89,7 +96,7 @@ void pictures_drop(struct pictures *pictures, int64_t id)
     struct picture_request *request = find_request(pictures, (uint64_t)id);
     if (!request)
         return;
-    end_request(request);
+    end_request(pictures, request, false);
     pipeline_drop(pictures->options.pipeline, (uint64_t)id);
 }
 
@@ -101,11 +108,12 @@ static void submit(struct pictures *pictures, struct waiting_request *waiting)
     if (request) {
         snapshot_ref(drawn.snapshot);
         waiting->request.annotation = NULL; /* goes on with the request */
+        waiting->request.film = NULL;       /* likewise */
     }
     waiting_request_destroy(waiting);
     if (!request || pipeline_submit(pictures->options.pipeline, &drawn, &err)) /* none: dropped meanwhile */
         return;
-    end_request(request);
+    end_request(pictures, request, false);
     refuse_busy(pictures, (int64_t)drawn.id);
 }
 
@@ -126,12 +134,12 @@ static uint64_t source_number(const char *source)
     return number;
 }
 
-/* NULL: there is no memory for it. */
-static struct pipeline_annotation *make_annotation(const struct snapshot *snapshot, const cJSON *view)
+/* has_text: false of a frame of a film, which carries none. NULL: there is no memory for it. */
+static struct pipeline_annotation *make_annotation(const struct snapshot *snapshot, const cJSON *view, bool has_text)
 {
     int64_t now_s = (int64_t)time(NULL);
-    char *text = snapshot_record(snapshot, view, now_s);
-    if (!text)
+    char *text = has_text ? snapshot_record(snapshot, view, now_s) : NULL;
+    if (has_text && !text)
         return NULL;
     struct pipeline_annotation *annotation = mem_new(sizeof *annotation);
     annotate_date(now_s, annotation->date);
@@ -160,6 +168,8 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         link_send_problem(pictures->options.link, render->id, &problem);
         return;
     }
+    if (render->turn_deg != 0 && snapshot->view.kind == SCENE_KIND_3D)
+        camera_turn(snapshot->plan, &snapshot->view, render->turn_deg);
     int width = (int)lround(snapshot->view.size_px[0] * render->scale_percent / 100),
         height = (int)lround(snapshot->view.size_px[1] * render->scale_percent / 100);
     bool is_coarse = render->detail == PACKET_DETAIL_COARSE, is_png = render->codec == PACKET_CODEC_PNG;
@@ -181,7 +191,7 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         refuse_busy(pictures, render->id);
         return;
     }
-    if (render->annotations && !(drawn.annotation = make_annotation(snapshot, render->shown.view))) {
+    if (render->annotations && !(drawn.annotation = make_annotation(snapshot, render->shown.view, render->film == 0))) {
         snapshot_unref(snapshot);
         (void)json_no_memory(&problem, "the picture's record");
         link_send_problem(pictures->options.link, render->id, &problem);
@@ -192,6 +202,15 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         drawn.annotation->is_named = render->named;
         drawn.annotation->has_crosshair = render->crosshair;
     }
+    if (render->film && !(drawn.film = films_begin_picture(pictures->films, render, &problem))) {
+        snapshot_unref(snapshot);
+        pipeline_annotation_destroy(drawn.annotation);
+        link_send_problem(pictures->options.link, render->id, &problem);
+        return;
+    }
+    drawn.n_film_times = (int)render->film_times;
+    drawn.ends_film = request->ends_film = render->film && render->film_end;
+    request->film = render->film;
     request->is_caption_apart = render->annotations && render->caption_apart;
     request->scene_revision = scene_revision;
     request->snapshot = snapshot_ref(snapshot);
@@ -324,7 +343,7 @@ void pictures_send_frame(struct pictures *pictures, const struct pipeline_frame 
     if (!request)
         return;
     if (frame->error.code != ERROR_NONE) {
-        end_request(request);
+        end_request(pictures, request, false);
         struct problem problem;
         problem_from_error(&problem, &frame->error);
         link_send_problem(pictures->options.link, (int64_t)frame->id, &problem);
@@ -348,8 +367,13 @@ void pictures_send_frame(struct pictures *pictures, const struct pipeline_frame 
     fields->missing = missing;
     cJSON *caption = request->is_caption_apart ? caption_of(request, frame->width_px) : NULL;
     fields->caption = caption;
-    end_request(request);
-    send_all(pictures, &packet, frame);
+    static const uint8_t no_picture[1] = { 0 };
+    const bool is_of_film = request->film && !frame->picture.n_bytes;
+    end_request(pictures, request, true);
+    if (is_of_film)
+        link_send(pictures->options.link, &packet, no_picture, sizeof no_picture);
+    else
+        send_all(pictures, &packet, frame);
     cJSON_Delete(caption);
     cJSON_Delete(missing);
 }

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { inflateSync } from 'node:zlib';
-import { call, openPlan, startDaemon, until } from './daemon.mjs';
+import { call, openPlan, renderersOf, startDaemon, until } from './daemon.mjs';
 import { readPng } from './png.mjs';
 import { parseStrict } from './strict_json.mjs';
 
@@ -167,4 +167,125 @@ test('a JPEG has the caption and no record, and wrong words are refused', async 
   const wrong = await call(`${plan}/render`, 'POST', { annotations: 'true' });
   assert.deepEqual([wrong.status, wrong.json.pointer], [422, '/annotations']);
   assert.equal(readPng(await snapshot(views[0], '&annotations=false')).height, 300);
+});
+
+// ---- films ------------------------------------------------------------------------------------------------------------
+
+/** The elements of EBML in bytes[at..end): RFC 8794, sections 4 and 5. */
+function* elements(bytes, at, end) {
+  const number = (from, n) => bytes.subarray(from, from + n).reduce((value, byte) => value * 256 + byte, 0);
+  while (at < end) {
+    const nId = Math.clz32(bytes[at]) - 23;
+    const nSize = Math.clz32(bytes[at + nId]) - 23;
+    const from = at + nId + nSize;
+    const size = (bytes[at + nId] & (0xff >> nSize)) * 256 ** (nSize - 1) + number(at + nId + 1, nSize - 1);
+    at = from + size;
+    assert.ok(at <= end, 'an element ends inside its parent');
+    yield { id: number(from - nId - nSize, nId), from, end: at, value: size <= 8 ? number(from, size) : 0 };
+  }
+}
+
+/** Size, length and number of frames of a film: RFC 9559, section 5. */
+function webm(bytes) {
+  const found = { nFrames: 0 };
+  const inside = [0x18538067, 0x1549a966, 0x1654ae6b, 0xae, 0xe0, 0x1f43b675]; // segment, info, tracks, entry, video, cluster
+  const read = (from, end) => {
+    for (const { id, from: first, end: last, value } of elements(bytes, from, end)) {
+      if (inside.includes(id)) read(first, last);
+      if (id === 0x4489) found.ms = last - first === 8 ? bytes.readDoubleBE(first) : bytes.readFloatBE(first);
+      if (id === 0xb0) found.width = value;
+      if (id === 0xba) found.height = value;
+      if (id === 0x86) found.codec = bytes.toString('latin1', first, last);
+      if (id === 0xa3) found.nFrames++;
+    }
+  };
+  read(0, bytes.length);
+  return found;
+}
+
+const order = { seconds: 1, fps: 4, view: { size_px: [480, 360] } };
+const job = async (id) => (await call(`${api}/jobs/${id}`)).json;
+const goesOn = ({ state }) => ['queued', 'running'].includes(state);
+const ended = (id) =>
+  until(
+    () => job(id),
+    (one) => !goesOn(one),
+  );
+const started = async (body, of = plan) => {
+  const answer = await call(`${of}/video`, 'POST', body);
+  assert.equal(answer.status, 202, answer.text);
+  assert.equal(answer.json.kind, 'film');
+  return answer.json.id;
+};
+async function filmOf(id) {
+  const answer = await fetch(`${api}/jobs/${id}/video`);
+  assert.deepEqual([answer.status, answer.headers.get('content-type')], [200, 'video/webm']);
+  assert.match(answer.headers.get('content-disposition'), /^attachment; filename="phantom.webm"$/);
+  return webm(Buffer.from(await answer.arrayBuffer()));
+}
+
+test('a film of a plan or of a room is WebM of the ordered length, with the caption below each picture', async () => {
+  const caption = readPng(await picture({ view: { size_px: [480, 360] }, annotations: true })).height;
+  for (const of of [plan, room]) {
+    const id = await started(order, of);
+    const done = await ended(id);
+    assert.deepEqual([done.state, done.percent, done.plan, done.problem], ['done', 100, 'phantom', null]);
+    const { width, height, ...rest } = await filmOf(id);
+    assert.deepEqual(rest, { nFrames: 4, ms: 1000, codec: 'V_VP9' });
+    assert.equal(width, 480);
+    assert.ok(of === room || (height >= caption && height <= caption + 80), `${height}, a picture with caption has ${caption}`);
+  }
+});
+
+test('an order for a film outside its limits is refused, and says which field', async () => {
+  const wrong = [
+    [{ seconds: undefined }, '/seconds'],
+    [{ seconds: 0.5 }, '/seconds'],
+    [{ seconds: 61 }, '/seconds'],
+    [{ seconds: '2' }, '/seconds'],
+    [{ fps: 31 }, '/fps'],
+    [{ fps: 2.5 }, '/fps'],
+    [{ quality: 0 }, '/quality'],
+    [{ degrees: 0 }, '/degrees'],
+    [{ degrees: 361 }, '/degrees'],
+    [{ identity: 'yes' }, '/identity'],
+    [{ size: 3 }, '/size'],
+    [{ view: { kind: 'axial' } }, '/view/kind'],
+    [{ view: { size_px: [1922, 400] } }, '/view/size_px'],
+    [{ view: { size_px: [1920, 1200] } }, '/view/size_px'],
+    [{ view: { size_px: [200, 400] } }, '/view/size_px'],
+  ];
+  for (const [change, pointer] of wrong)
+    for (const of of [plan, room]) {
+      const answer = await call(`${of}/video`, 'POST', { ...order, ...change });
+      assert.deepEqual([answer.status, answer.json.pointer], [422, pointer], JSON.stringify(change));
+    }
+  assert.equal((await call(`${room}/video`, 'POST', { ...order, scene: {} })).json.pointer, '/scene', 'of a room it is the room’s');
+  assert.equal((await call(`${api}/jobs/open-1/video`)).status, 404);
+  assert.equal((await call(`${api}/plans/none/video`, 'POST', order)).status, 404);
+});
+
+test('a film begins anew when its renderer is killed, and is whole', async () => {
+  const id = await started({ seconds: 1, fps: 12, view: { size_px: [240, 240] } });
+  await until(
+    () => job(id),
+    ({ percent }) => percent > 20,
+  );
+  for (const pid of renderersOf(daemon.child.pid)) process.kill(pid, 'SIGKILL');
+  assert.equal((await ended(id)).state, 'done');
+  assert.equal((await filmOf(id)).nFrames, 12);
+});
+
+test('two films are made at once and eight wait; a cancelled one gives its place to the next', async () => {
+  const long = { seconds: 60, fps: 30, view: { size_px: [240, 240] } };
+  const ids = [];
+  for (let i = 0; i < 10; i++) ids.push(await started(long));
+  assert.deepEqual([(await call(`${plan}/video`, 'POST', long)).status, (await job(ids[2])).state], [429, 'queued']);
+  const early = await call(`${api}/jobs/${ids[2]}/video`);
+  assert.deepEqual([early.status, early.json.type], [409, '/problems/conflict']);
+  assert.equal((await call(`${api}/jobs/${ids[0]}`, 'DELETE')).json.state, 'cancelled');
+  assert.equal((await job(ids[2])).state, 'running');
+  assert.equal((await call(`${api}/jobs/${ids[0]}/video`)).status, 409);
+  for (const id of ids.slice(1).reverse()) assert.equal((await call(`${api}/jobs/${id}`, 'DELETE')).json.state, 'cancelled');
+  assert.equal((await ended(await started(order))).state, 'done', 'the renderer has room for films again');
 });

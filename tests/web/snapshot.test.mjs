@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe } from 'node:test';
 import { bin, call } from '../api/daemon.mjs';
+import { axe } from './axe.mjs';
 import { bytesOf, full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 import { textOfPages } from './pdf_text.mjs';
 
@@ -230,18 +231,10 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  once('a film of a turn plays in a browser, and its pictures are those that render draws from there', async () => {
-    const draw = (...args) => {
-      const drawn = spawnSync(join(bin, 'beamroom'), ['render', join(folder, 'other'), '--size', '320x240', '--gl', 'soft', ...args]);
-      assert.equal(drawn.status, 0, String(drawn.stderr));
-      return readFileSync(args[args.indexOf('-o') + 1]).toString('base64');
-    };
-    const film = draw('-o', join(folder, 'turn.webm'), '--from', '30,10', '--orbit', '2,5', '--quality', '100', '--annotations');
-    // the camera is turned, so it says from where; letters and caption are in the pictures
-    const stills = ['30,10', '210,10'].map((from, at) => draw('-o', join(folder, `${at}.png`), '--from', from, '--annotations'));
-    const page = await world.newPage('healthz');
-    const { width, height, stillHeight, duration, far, near } = await page.evaluate(
-      async ([video_data, pictures]) => {
+  /** A film as the browser plays it, and how far each of its pictures at these seconds is from each of the stills, of 255. All in base 64. */
+  const played = (page, film, stills, seconds) =>
+    page.evaluate(
+      async ([video_data, pictures, times]) => {
         const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
         const video = document.createElement('video');
         const loads = (one, name) =>
@@ -260,26 +253,79 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
         await loads(video, 'loadeddata');
         const images = await Promise.all(pictures.map((text) => createImageBitmap(new Blob([bytes(text)], { type: 'image/png' }))));
         const [w, h] = [images[0].width, images[0].height];
-        const off = (a, b) => a.reduce((sum, value, at) => sum + Math.abs(value - b[at]), 0) / a.length;
-        const [still, opposite] = images.map((image) => pixels(image, w, h));
-        const frames = [];
-        for (const second of [0.1, 1.1]) {
+        const distance = (one, other) => one.reduce((sum, value, at) => sum + Math.abs(value - other[at]), 0) / one.length;
+        const drawn = images.map((image) => pixels(image, w, h));
+        const off = [];
+        for (const second of times) {
           const seeked = loads(video, 'seeked');
           video.currentTime = second;
           await seeked;
-          frames.push(pixels(video, w, h));
+          const frame = pixels(video, w, h);
+          off.push(drawn.map((one) => distance(frame, one)));
         }
-        return {
-          width: video.videoWidth,
-          height: video.videoHeight,
-          stillHeight: h,
-          duration: video.duration,
-          near: [off(frames[0], still), off(frames[1], opposite)],
-          far: off(frames[0], opposite),
-        };
+        return { width: video.videoWidth, height: video.videoHeight, stillHeight: h, duration: video.duration, off };
       },
-      [film, stills],
+      [film, stills, seconds],
     );
+
+  once('a film of a turn is ordered in the menu, made while the page goes on, and shows what the room showed', async () => {
+    const room = await world.newRoom();
+    await patch(room, { regions: { scalp: { visible: false }, brain: { color: '#00ff00', opacity: 1 } } });
+    const page = await world.newPage(`rooms/${room}`);
+    await full(page, 1);
+    await choose(page, 2); // a slice: the film turns the pane into space
+    await menu(page, /Film of a turn/);
+    const dialog = page.getByRole('dialog', { name: 'Film of a turn' });
+    await dialog.waitFor();
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'film-form');
+    await dialog.getByRole('spinbutton', { name: 'Length' }).fill('1');
+    await dialog.getByRole('spinbutton', { name: 'Length' }).press('Tab');
+    await dialog.getByText('24 pictures of the scene', { exact: false }).waitFor();
+    await dialog.getByRole('radio', { name: '12', exact: true }).click();
+    await dialog.getByRole('button', { name: 'Make the film' }).press('Enter');
+    await dialog.getByRole('progressbar', { name: 'Progress of the film' }).waitFor();
+    await patch(room, { regions: { brain: { color: '#ff0000' } } }); // the film is of the scene before
+    assert.deepEqual(await axe(page), []);
+    await page.keyboard.press('Escape');
+    await dialog.waitFor({ state: 'detached' });
+    await page.getByText('The film is made', { exact: true }).waitFor({ timeout: 120000 });
+    await menu(page, /Film of a turn/);
+    const [download] = await Promise.all([page.waitForEvent('download'), dialog.getByRole('button', { name: 'Save the film' }).click()]);
+    assert.equal(download.suggestedFilename(), 'phantom-turn.webm');
+    const film = (await bytesOf(download)).toString('base64');
+    const view = encodeURIComponent(JSON.stringify({ kind: '3d', size_px: [640, 480] })); // nobody has moved the camera
+    const still = async (color) => {
+      await patch(room, { regions: { brain: { color } } });
+      const answer = await fetch(`${world.daemon.url}/api/v1/rooms/${room}/snapshot?annotations=true&view=${view}`);
+      return Buffer.from(await answer.arrayBuffer()).toString('base64');
+    };
+    const stills = [await still('#00ff00'), await still('#ff0000')];
+    const blank = await world.newPage('healthz'); // a room's page plays no films
+    const shown = await played(blank, film, stills, [0.01]);
+    await blank.context().close();
+    assert.deepEqual([shown.width, shown.duration], [640, 1]);
+    const [same, other] = shown.off[0];
+    assert.ok(same < 4 && other > 2 * same, `${same} off the scene as it was ordered, ${other} off the later one`);
+    await dialog.getByRole('button', { name: 'Another film' }).click();
+    await dialog.getByRole('radio', { name: 'quarter' }).waitFor();
+    assert.deepEqual(world.errors, []);
+    await page.context().close();
+  });
+
+  once('a film of a turn plays in a browser, and its pictures are those that render draws from there', async () => {
+    const draw = (...args) => {
+      const drawn = spawnSync(join(bin, 'beamroom'), ['render', join(folder, 'other'), '--size', '320x240', '--gl', 'soft', ...args]);
+      assert.equal(drawn.status, 0, String(drawn.stderr));
+      return readFileSync(args[args.indexOf('-o') + 1]).toString('base64');
+    };
+    const film = draw('-o', join(folder, 'turn.webm'), '--from', '30,10', '--orbit', '2,5', '--quality', '100', '--annotations');
+    // the camera is turned, so it says from where; letters and caption are in the pictures
+    const stills = ['30,10', '210,10'].map((from, at) => draw('-o', join(folder, `${at}.png`), '--from', from, '--annotations'));
+    const page = await world.newPage('healthz');
+    const { width, height, stillHeight, duration, off } = await played(page, film, stills, [0.1, 1.1]);
+    const near = [off[0][0], off[1][1]];
+    const far = off[0][1];
     assert.deepEqual([width, height, duration], [320, stillHeight + (stillHeight % 2), 2]);
     assert.ok(Math.max(...near) < 2.5 && far > 2 * Math.max(...near), `${near} off, and ${far} from the other side`);
     await page.context().close();

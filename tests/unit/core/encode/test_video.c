@@ -3,7 +3,7 @@
 #include <vpx/vp8dx.h>
 #include <vpx/vpx_decoder.h>
 
-#include "core/encode/video.h"
+#include "core/encode/film.h"
 #include "tests/check.h"
 
 enum { WIDTH = 64, HEIGHT = 48, FPS = 10, N = 45 };
@@ -19,7 +19,7 @@ static void color_of(int n, uint8_t rgb[3])
 static struct encoded made(int quality)
 {
     struct error err = { 0 };
-    struct video *video = video_create(WIDTH, HEIGHT, FPS, quality, &err);
+    struct video *video = video_create(WIDTH, HEIGHT, FPS, quality, 0, &err);
     struct image *image = image_create(WIDTH, HEIGHT, &err);
     struct encoded film = { 0 };
     assert_non_null(video);
@@ -184,12 +184,12 @@ static void what_no_film_can_be_is_refused(void **state)
                   { 64, 48, 0, 90 },  { 64, 48, 61, 90 }, { 64, 48, 10, 0 },  { 64, 48, 10, 101 } };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct error err = { 0 };
-        assert_null(video_create(wrong[i].width, wrong[i].height, wrong[i].fps, wrong[i].quality, &err));
+        assert_null(video_create(wrong[i].width, wrong[i].height, wrong[i].fps, wrong[i].quality, 0, &err));
         assert_int_equal(err.code, ERROR_RANGE);
     }
     struct error err = { 0 };
     struct encoded film;
-    struct video *video = video_create(WIDTH, HEIGHT, FPS, 90, &err);
+    struct video *video = video_create(WIDTH, HEIGHT, FPS, 90, 0, &err);
     struct image *other = image_create(WIDTH, HEIGHT + 2, &err);
     assert_false(video_finish(video, &film, &err));
     assert_int_equal(err.code, ERROR_STATE);
@@ -200,11 +200,80 @@ static void what_no_film_can_be_is_refused(void **state)
     video_destroy(video);
 }
 
+/* ---- films that grow -------------------------------------------------------------------------------------------- */
+
+static struct image *grey(int width_px, int height_px)
+{
+    struct error err = { 0 };
+    struct image *image = image_create(width_px, height_px, &err);
+    assert_non_null(image);
+    memset(image->rgba, 90, (size_t)width_px * (size_t)height_px * 4);
+    return image;
+}
+
+static size_t n_frames_of(const struct encoded *film)
+{
+    struct element segment = segment_of(film), cluster = { 0 };
+    size_t n = 0;
+    while ((cluster = child(film, segment, 0x1F43B675, cluster.end)).end) {
+        struct element block = { 0 };
+        while ((block = child(film, cluster, 0xA3, block.end)).end)
+            n++;
+    }
+    return n;
+}
+
+static void a_film_has_the_first_pictures_size_and_spare_rows_and_refuses_a_larger_one(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    struct encoded encoded = { 0 };
+    const struct film_options options = { .fps = FPS, .quality = 90, .n_threads = 1, .spare_px = 7 };
+    struct film *film = film_create(&options, &err);
+    struct image *first = grey(61, 40), *higher = grey(61, 47), *too_high = grey(61, 49), *too_wide = grey(63, 40);
+    int size_px[2];
+    assert_false(film_finish(film, &encoded, size_px, &err));
+    assert_int_equal(err.code, ERROR_STATE);
+    assert_true(film_add(film, first, 3, &err));
+    assert_true(film_add(film, higher, 1, &err));
+    assert_false(film_add(film, too_high, 1, &err));
+    assert_int_equal(err.code, ERROR_RANGE);
+    assert_false(film_add(film, too_wide, 1, &err));
+    assert_int_equal(film_n_pictures(film), 2);
+    struct film *other = film_ref(film);
+    film_unref(film);
+    assert_true(film_finish(other, &encoded, size_px, &err));
+    assert_int_equal(size_px[0], 62);
+    assert_int_equal(size_px[1], 48); /* 40 and 7, made even */
+    assert_int_equal(n_frames_of(&encoded), 4);
+    film_unref(other);
+    image_destroy(first);
+    image_destroy(higher);
+    image_destroy(too_high);
+    image_destroy(too_wide);
+    free(encoded.bytes);
+}
+
+static void a_film_larger_than_allowed_is_refused(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    const struct film_options options = { .fps = FPS, .quality = 100, .n_threads = 1, .max_bytes = 20 };
+    struct film *film = film_create(&options, &err);
+    struct image *image = grey(64, 48);
+    assert_false(film_add(film, image, 1, &err));
+    assert_int_equal(err.code, ERROR_LIMIT);
+    image_destroy(image);
+    film_unref(film);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cues_lead_to_clusters_that_begin_with_a_key_frame),
         cmocka_unit_test(colors_come_back),
+        cmocka_unit_test(a_film_has_the_first_pictures_size_and_spare_rows_and_refuses_a_larger_one),
+        cmocka_unit_test(a_film_larger_than_allowed_is_refused),
         cmocka_unit_test(what_no_film_can_be_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,12 +10,14 @@ export const report = {
     world.printout = new Printout(world.room.id, world.api, globalThis.sessionStorage);
     world.otherPlan = signal(null);
     world.printoutDialog = signal(null);
+    world.filmDialog = signal(null);
   },
   start(world) {
     const stops = [listenSnapshots(world), resumeSnapshot(world)];
     return () => stops.forEach((stop) => stop());
   },
-  dialogs: ['printout', 'other-plan'],
-  dialog: (world) => html`${code.loaded.value?.otherPlanDialog(world)}${world.printoutDialog.value?.(world)}`,
+  dialogs: ['printout', 'other-plan', 'film'],
+  dialog: (world) =>
+    html`${code.loaded.value?.otherPlanDialog(world)}${world.printoutDialog.value?.(world)}${world.filmDialog.value?.(world)}`,
   strip: { end: snapshotMenu },
 };

@@ -51,6 +51,16 @@ async function openPrintout({ ui, printoutDialog }) {
   }
 }
 
+/** Likewise. */
+async function openFilm({ ui, filmDialog }) {
+  try {
+    [{ filmDialog: filmDialog.value }] = await Promise.all([import('./film.js'), styled('js/features/report/film.css')]);
+    ui.popover.value = 'film';
+  } catch {
+    ui.notify('err', say.filmNotLoaded, 'snapshot');
+  }
+}
+
 /** The menu while it is open. */
 export function menu(world) {
   const { room, ui, printout } = world;
@@ -65,6 +75,7 @@ export function menu(world) {
   return html`<div class="popover snapshots"><div class="menu" role="menu" aria-label=${say.snapshot} @keydown=${menuKeys}>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>${say.save}</span></button>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>${say.add}</span></button>
+      <button role="menuitem" @click=${act(openFilm)}>${icon('reset')}<span>${say.filmOf}</span></button>
       <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>${say.report}</span><span class="tag">${n}</span></button></div>
       ${room.seesIdentity.value && shownPatient(room.plan.value, room.scene.value) ? html`<label class="snapshot-named"><input type="checkbox"> ${say.withIdentity}</label>` : nothing}
       <p class="note">${say.about}</p></div>`;

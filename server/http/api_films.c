@@ -1,0 +1,284 @@
+/* Films of a turn about a plan: requested picture by picture, so that rooms are drawn between them and a job knows how
+ * far it is. */
+#include "server/http/api_films.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+
+enum { MAX_BEGINNINGS = 3 /* a renderer that ends takes its films along: they begin anew */, MAX_FILM_MIN = 60 };
+
+struct api_film {
+    struct api_film *next; /* the newest first */
+    struct api *api;
+    uint64_t number, request; /* request: of the fleet; 0: none is under way */
+    int64_t renderer_number;  /* what the renderer calls it: another one each time it begins */
+    char plan_id[64], room_id[64], user[IDENTITY_MAX_USER + 1]; /* room_id: "": of no room */
+    cJSON *scene, *acceptances, *view;                          /* acceptances: NULL: none */
+    double degrees, fps, quality;
+    bool is_named;
+    int n_pictures, n_done, n_beginnings;
+    int64_t begun_us;
+    enum api_job_state state;
+    struct problem problem;
+    uint8_t *bytes; /* when done */
+    size_t n_bytes;
+};
+
+static void free_documents(struct api_film *film)
+{
+    cJSON_Delete(film->scene);
+    cJSON_Delete(film->acceptances);
+    cJSON_Delete(film->view);
+    film->scene = film->acceptances = film->view = NULL;
+}
+
+static void film_free(struct api_film *film)
+{
+    free_documents(film);
+    free(film->bytes);
+    free(film);
+}
+
+static struct api_film *find(const struct api *api, uint64_t number)
+{
+    struct api_film *film = api->films;
+    while (film && film->number != number)
+        film = film->next;
+    return film;
+}
+
+/* ---- making ----------------------------------------------------------------------------------------------------- */
+
+static void request_picture(struct api_film *film);
+
+static void start_waiting(struct api *api)
+{
+    size_t n = 0;
+    struct api_film *next = NULL;
+    for (struct api_film *film = api->films; film; film = film->next) {
+        n += film->state == JOB_RUNNING;
+        if (film->state == JOB_QUEUED)
+            next = film; /* the oldest */
+    }
+    if (!next || n >= API_MAX_FILMS_AT_WORK)
+        return;
+    next->state = JOB_RUNNING;
+    next->begun_us = clock_now_us();
+    request_picture(next);
+}
+
+/* After PROBLEM_CANCELLED, which may say that the server is stopping, nothing more is asked of renderers. */
+static void end_film(struct api_film *film, enum api_job_state state, const struct problem *problem)
+{
+    film->state = state;
+    if (problem)
+        film->problem = *problem;
+    free_documents(film);
+    if (!problem || problem->type != PROBLEM_CANCELLED)
+        start_waiting(film->api);
+}
+
+void api_films_go_on(struct api *api)
+{
+    start_waiting(api);
+}
+
+/* The oldest films go when all take too much memory. */
+static void keep_within_limit(struct api *api)
+{
+    uint64_t n_bytes = 0;
+    for (struct api_film *film = api->films; film; film = film->next) {
+        n_bytes += film->n_bytes;
+        if (n_bytes > API_KEPT_FILM_BYTES && film->bytes) {
+            n_bytes -= film->n_bytes;
+            free(film->bytes);
+            film->bytes = NULL;
+            film->n_bytes = 0;
+        }
+    }
+}
+
+static bool is_webm(const struct packet *answer)
+{
+    static const uint8_t head[] = { 0x1a, 0x45, 0xdf, 0xa3 }; /* EBML */
+    return answer->blob && answer->n_blob > sizeof head && answer->n_blob <= API_MAX_FILM_BYTES + (1 << 20) &&
+           memcmp(answer->blob, head, sizeof head) == 0;
+}
+
+static void take_film(struct api_film *film, struct packet *answer)
+{
+    struct problem problem;
+    if (!is_webm(answer)) {
+        problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer's answer has no film");
+        end_film(film, JOB_FAILED, &problem);
+        return;
+    }
+    film->bytes = answer->blob;
+    film->n_bytes = answer->n_blob;
+    answer->blob = NULL;
+    keep_within_limit(film->api);
+    end_film(film, JOB_DONE, NULL);
+}
+
+/* True if another renderer may make the film that this one did not. */
+static bool can_begin_anew(const struct api_film *film, const struct problem *problem)
+{
+    return film->n_beginnings < MAX_BEGINNINGS &&
+           (problem->type == PROBLEM_RENDERER || problem->type == PROBLEM_NOT_FOUND || problem->type == PROBLEM_BUSY);
+}
+
+static void picture_came(void *context, struct packet *answer, const struct problem *problem)
+{
+    struct api_film *film = context;
+    film->request = 0;
+    if (problem && can_begin_anew(film, problem)) {
+        film->n_done = 0;
+        request_picture(film);
+    } else if (problem) {
+        end_film(film, JOB_FAILED, problem);
+    } else if (++film->n_done == film->n_pictures) {
+        take_film(film, answer);
+    } else {
+        request_picture(film);
+    }
+}
+
+/* A whole turn ends where it began: its last picture is the one before the first. */
+static double turn_deg(const struct api_film *film)
+{
+    const int n = film->n_pictures, n_steps = fabs(film->degrees) < 360 && n > 1 ? n - 1 : n;
+    return film->degrees * film->n_done / n_steps;
+}
+
+static void request_picture(struct api_film *film)
+{
+    struct fleet *fleet = net_fleet(film->api->net);
+    struct problem problem;
+    struct packet packet;
+    if (film->n_done == 0) {
+        film->n_beginnings++;
+        film->renderer_number = (int64_t)(++film->api->n_film_beginnings);
+        if (!fleet_open(fleet, film->plan_id, &problem)) {
+            end_film(film, JOB_FAILED, &problem);
+            return;
+        }
+    }
+    if (clock_now_us() - film->begun_us > MAX_FILM_MIN * INT64_C(60000000)) {
+        problem_set(&problem, PROBLEM_TIMEOUT, "", "", "the film was not made within %d minutes", MAX_FILM_MIN);
+        end_film(film, JOB_FAILED, &problem);
+        return;
+    }
+    packet_init(&packet, PACKET_RENDER);
+    packet.render.shown.scene = film->scene;
+    packet.render.shown.acceptances = film->acceptances;
+    packet.render.shown.view = film->view;
+    packet.render.quality = (int64_t)film->quality;
+    packet.render.still = true;
+    packet.render.annotations = true;
+    packet.render.named = film->is_named;
+    packet.render.turn_deg = turn_deg(film);
+    packet.render.film = film->renderer_number;
+    packet.render.film_at = film->n_done;
+    packet.render.film_fps = (int64_t)film->fps;
+    packet.render.film_end = film->n_done + 1 == film->n_pictures;
+    film->request = fleet_request(fleet, film->plan_id, &packet, picture_came, film);
+}
+
+/* ---- for jobs --------------------------------------------------------------------------------------------------- */
+
+bool api_film_find(const struct api *api, uint64_t number, struct api_film_state *state)
+{
+    const struct api_film *film = find(api, number);
+    if (film)
+        *state = (struct api_film_state){ .state = film->state,
+                                          .n_pictures = film->n_pictures,
+                                          .n_done = film->n_done,
+                                          .problem = &film->problem,
+                                          .plan_id = film->plan_id,
+                                          .room_id = film->room_id,
+                                          .is_named = film->is_named,
+                                          .bytes = film->bytes,
+                                          .n_bytes = film->n_bytes };
+    return film != NULL;
+}
+
+void api_film_cancel(struct api *api, uint64_t number)
+{
+    struct api_film *film = find(api, number);
+    if (!film || (film->state != JOB_RUNNING && film->state != JOB_QUEUED))
+        return;
+    if (film->request) {
+        struct packet packet;
+        packet_init(&packet, PACKET_DROP);
+        packet.drop.id = (int64_t)film->request;
+        (void)fleet_tell(net_fleet(api->net), film->plan_id, &packet); /* false when not ready: it was never sent */
+        fleet_forget_request(net_fleet(api->net), film->request);
+        film->request = 0;
+    }
+    end_film(film, JOB_CANCELLED, NULL);
+}
+
+void api_film_forget(struct api *api, uint64_t number)
+{
+    api_film_cancel(api, number);
+    for (struct api_film **at = &api->films; *at; at = &(*at)->next)
+        if ((*at)->number == number) {
+            struct api_film *film = *at;
+            *at = film->next;
+            film_free(film);
+            return;
+        }
+}
+
+void api_films_destroy(struct api *api)
+{
+    while (api->films) {
+        struct api_film *film = api->films;
+        api->films = film->next;
+        film_free(film);
+    }
+}
+
+/* ---- from outside ---------------------------------------------------------------------------------------------- */
+
+bool api_films_have_place(const struct api *api, const char *user, struct problem *problem)
+{
+    int n_waiting = 0, n_own = 0;
+    for (const struct api_film *film = api->films; film; film = film->next) {
+        const bool is_open = film->state == JOB_RUNNING || film->state == JOB_QUEUED;
+        n_waiting += film->state == JOB_QUEUED;
+        n_own += is_open && user[0] && strcmp(film->user, user) == 0;
+    }
+    if (n_own >= API_MAX_FILMS_OF_ONE)
+        return problem_set(problem, PROBLEM_LIMIT, "", "", "%d films of yours are being made already", n_own);
+    return n_waiting < API_MAX_FILMS_WAITING ||
+           problem_set(problem, PROBLEM_LIMIT, "", "", "%d films wait to be made already", n_waiting);
+}
+
+uint64_t api_film_make(struct api *api, const struct film_order *order)
+{
+    struct api_film *film = mem_new(sizeof *film);
+    *film = (struct api_film){ .next = api->films,
+                               .api = api,
+                               .number = ++api->n_films,
+                               .scene = order->scene,
+                               .acceptances = order->acceptances ? cJSON_Duplicate(order->acceptances, true) : NULL,
+                               .view = order->view,
+                               .degrees = order->degrees,
+                               .fps = order->fps,
+                               .quality = order->quality,
+                               .is_named = order->is_named,
+                               .n_pictures = (int)fmax(1, round(order->seconds * order->fps)),
+                               .state = JOB_QUEUED };
+    mem_put_text(film->plan_id, sizeof film->plan_id, order->plan_id);
+    mem_put_text(film->room_id, sizeof film->room_id, order->room_id);
+    mem_put_text(film->user, sizeof film->user, order->user);
+    api->films = film;
+    start_waiting(api);
+    return film->number;
+}

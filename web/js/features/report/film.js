@@ -1,0 +1,148 @@
+// A film of a turn about the scene: a small form, the progress of its job, and the film to save. The server makes it while the page does other things.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { signal } from '../../../lib/signals-core.js';
+import { ofMember } from '../../net/api.js';
+import { checkbox, numberField, segment } from '../../parts/fields.js';
+import { icon } from '../../parts/icons.js';
+import { shownPatient } from '../../room/identity.js';
+import { say } from './later_words.js';
+
+const pollMs = 500;
+const sizes = { 640: [640, 480], 1280: [1280, 720], 1920: [1920, 1080] };
+const turns = { 360: say.filmWhole, 180: say.filmHalf, 90: say.filmQuarter };
+const most = { seconds: 60 };
+const first = { degrees: 360, isReversed: false, seconds: 12, fps: 24, width: 640, isNamed: false };
+const states = new WeakMap(); // of each room: {order, job, why}
+
+function stateOf(room) {
+  if (!states.has(room)) states.set(room, { order: signal(first), job: signal(null), why: signal('') });
+  return states.get(room);
+}
+
+/** The view that turns: the active pane where it is one into space, else the first such pane that is open. */
+function turningView({ room, ui }) {
+  const active = room.view(ui.active.value);
+  const isOne = (view) => view.document.value.kind === '3d';
+  return isOne(active) ? active : (room.views.find((view) => view.isOpen.value && isOne(view)) ?? room.views.find(isOne) ?? null);
+}
+
+/** Asks for the job until it has ended. */
+async function follow({ api, clock, ui }, state) {
+  while (state.job.value && ['queued', 'running'].includes(state.job.value.state)) {
+    await new Promise((done) => clock.setTimeout(done, pollMs));
+    const { id } = state.job.value ?? {};
+    if (!id) return;
+    const job = await api.job(id);
+    if (state.job.value?.id !== id) return;
+    state.job.value = job;
+    if (job.state === 'failed') state.why.value = job.problem?.detail ?? say.filmFailed;
+    if (job.state === 'done' && ui.popover.value !== 'film') ui.notify('ok', say.filmMade, 'film');
+  }
+  if (state.job.value?.state !== 'done') state.job.value = null;
+}
+
+async function make(world, state) {
+  const { room, api } = world;
+  const { degrees, isReversed, seconds, fps, width, isNamed } = state.order.value;
+  const document = turningView(world)?.document.value;
+  state.why.value = '';
+  try {
+    state.job.value = { state: 'queued', percent: 0 };
+    state.job.value = await api.call('POST', `rooms/${room.id}/video`, {
+      more: ofMember(room.identity),
+      body: {
+        view: { ...document, size_px: sizes[width] },
+        degrees: isReversed ? -degrees : degrees,
+        seconds,
+        fps,
+        identity: isNamed,
+      },
+    });
+    await follow(world, state);
+  } catch (problem) {
+    state.job.value = null;
+    state.why.value = problem.message;
+  }
+}
+
+async function cancel({ api }, state) {
+  const { id } = state.job.value ?? {};
+  state.job.value = null;
+  try {
+    if (id) await api.cancelJob(id);
+  } catch (problem) {
+    state.why.value = problem.message;
+  }
+}
+
+async function save({ api, room }, state) {
+  try {
+    const [{ saveBlob }, film] = await Promise.all([
+      import('../../room/exports.js'),
+      api.call('GET', `jobs/${state.job.value.id}/video`, { isPicture: true }),
+    ]);
+    saveBlob(`${room.planId.value}-turn.webm`, film);
+  } catch (problem) {
+    state.why.value = problem.message;
+  }
+}
+
+/** A button goes when the next part is drawn: its focus goes to the dialog. */
+const kept = (run) => (event) => {
+  event.currentTarget.closest('[role="dialog"]').focus();
+  run();
+};
+
+function form(world, state) {
+  const { room } = world;
+  const order = state.order.value;
+  const set = (change) => {
+    state.order.value = { ...order, ...change };
+  };
+  const options = (words) => Object.entries(words).map(([id, word]) => [id, word]);
+  const asRates = [12, 24, 30].map((n) => [String(n), String(n)]);
+  const asSizes = Object.entries(sizes).map(([id, [w, h]]) => [id, `${w} × ${h}`]);
+  const hasView = Boolean(turningView(world));
+  const isNameable = room.seesIdentity.value && shownPatient(room.plan.value, room.scene.value);
+  return html`<div class="film-fields">
+      <span class="lbl">${say.filmTurn}</span>${segment(say.filmTurn, options(turns).reverse(), String(order.degrees), false, (id) => set({ degrees: Number(id) }))}
+      <span></span>${checkbox(say.filmReversed, order.isReversed, false, (isReversed) => set({ isReversed }))}
+      <span class="lbl">${say.filmLength}</span>${numberField(say.filmLength, order.seconds, 's', false, (seconds) => set({ seconds: Math.min(most.seconds, Math.max(1, seconds)) }))}
+      <span class="lbl">${say.filmRate}</span>${segment(say.filmRate, asRates, String(order.fps), false, (id) => set({ fps: Number(id) }))}
+      <span class="lbl">${say.filmSize}</span>${segment(say.filmSize, asSizes, String(order.width), false, (id) => set({ width: Number(id) }))}
+      ${isNameable ? html`<span></span>${checkbox(say.withIdentity, order.isNamed, false, (isNamed) => set({ isNamed }))}` : nothing}</div>
+    <p class="note">${hasView ? say.filmAbout({ n: Math.round(order.seconds * order.fps) }) : say.filmNoView}</p>
+    <div class="buttons"><button class="primary" ?disabled=${!hasView} @click=${kept(() => make(world, state))}>${icon('reset')}<span>${say.filmMake}</span></button></div>`;
+}
+
+function running(world, state) {
+  const { percent, state: word } = state.job.value;
+  const words = word === 'queued' ? say.filmWaits : say.filmMaking({ percent: Math.round(percent) });
+  return html`<p role="status">${words}</p>
+    <progress max="100" value=${percent} aria-label=${say.filmProgress}></progress>
+    <p class="note">${say.filmGoesOn}</p>
+    <div class="buttons"><button @click=${kept(() => cancel(world, state))}>${say.filmCancel}</button></div>`;
+}
+
+function done(world, state) {
+  const another = () => {
+    state.job.value = null;
+  };
+  return html`<p role="status">${say.filmMade}</p>
+    <div class="buttons"><button class="primary" @click=${() => save(world, state)}>${icon('download')}<span>${say.filmSave}</span></button>
+      <button @click=${kept(another)}>${say.filmAnother}</button></div>`;
+}
+
+export function filmDialog(world) {
+  const { room, ui } = world;
+  if (ui.popover.value !== 'film') return nothing;
+  const state = stateOf(room);
+  const job = state.job.value;
+  const close = () => {
+    ui.popover.value = '';
+  };
+  return html`<section class="card other-plan film" role="dialog" tabindex="-1" aria-labelledby="film-head">
+    <div class="film-head"><h2 id="film-head">${say.film}</h2><button class="icon-button" aria-label=${say.filmClose} @click=${close}>${icon('close')}</button></div>
+    ${state.why.value ? html`<p class="warn" role="alert">${state.why.value}</p>` : nothing}
+    ${job ? (job.state === 'done' ? done(world, state) : running(world, state)) : form(world, state)}</section>`;
+}
