@@ -1,6 +1,7 @@
 // Draws over a picture, by the matrix that came with it: letters, crosshair, ends of the patient's axes, scale bar, window.
 import { nothing, svg } from '../../lib/lit-html.js';
 import { isInSpace } from '../room/kinds.js';
+import { crosshair } from '../room/plan.js';
 import { edgeLetters } from './letters.js';
 import { axisEnds } from './orientation.js';
 import { barMm, toPicture } from '../parts/vec.js';
@@ -35,6 +36,10 @@ export function overlay({ kind, header, box, pane: [width, height], point, isOff
     ${pxPerMm > 0 && width >= scaleFrom ? scaleBar(pxPerMm, width, height) : nothing}
     ${!isInSpace(kind) && width >= windowFrom ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${fitting(windowText, width / 2 - letterHalf - 12)}</text>` : nothing}`;
 }
+
+/** The patient's axes of which letters are drawn: axes of overlay(). */
+export const axesOf = ({ axes, ...scene }, plan) =>
+  axes?.visible && axes.letters !== false && plan?.bounds ? { box: plan.bounds, form: axes.form, crosshair: crosshair(scene) } : null;
 
 /** The text, without what stands after the window's centre and width where there is no room for it; '' where there is none for those. */
 function fitting(text, roomPx) {

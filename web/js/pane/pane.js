@@ -10,7 +10,7 @@ import { heightOver, positionOf, reachOf, stepAcross } from '../room/obliques.js
 import { crosshair, isLowWhite, shownImage } from '../room/plan.js';
 import { isInSpace, isTilted, isTurnable } from '../room/kinds.js';
 import { letters } from './letters.js';
-import { overlay } from './overlay.js';
+import { axesOf, overlay } from './overlay.js';
 import { Painter } from './painter.js';
 import { PointerReader } from './pointer.js';
 import { millimetres, number, windowText } from '../parts/format.js';
@@ -210,10 +210,7 @@ export class Pane {
       box,
       pane,
       isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
-      axes:
-        scene.axes?.visible && scene.axes.letters !== false && plan?.bounds
-          ? { box: plan.bounds, form: scene.axes.form, crosshair: crosshair(scene) }
-          : null,
+      axes: axesOf(scene, plan),
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? say.noImage : '',

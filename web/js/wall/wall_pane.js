@@ -3,7 +3,7 @@ import { html, nothing, svg } from '../../lib/lit-html.js';
 import { computed, signal } from '../../lib/signals-core.js';
 import { features } from '../features/index.js';
 import { PaneActions, fitBox } from '../pane/pane_actions.js';
-import { overlay } from '../pane/overlay.js';
+import { axesOf, overlay } from '../pane/overlay.js';
 import { Painter } from '../pane/painter.js';
 import { whereWords } from '../pane/where.js';
 import { fidelity } from '../room/fidelity.js';
@@ -142,7 +142,7 @@ export class WallPane {
       box,
       pane,
       isOffPlane: isTilted(this.#view.kind) && Math.abs(heightOver(plane, point)) > tolerance,
-      axes: scene.value.axes?.visible ? plan.value.bounds : null,
+      axes: axesOf(scene.value, plan.value),
       point: shownImage(plan.value, scene.value) || plan.value.regions.length ? point : null,
       pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
       windowText: '',
