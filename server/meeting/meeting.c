@@ -203,6 +203,7 @@ static void leave(struct meeting *meeting, int64_t now_ms)
     else
         now->visits[MEETING_MAX_VISITS - 1].to_ms += to_ms - meeting->since_ms;
     meeting->now[0] = 0;
+    now->opens = false;
 }
 
 void meeting_go(struct meeting *meeting, struct meeting_case *to, int64_t now_ms)
@@ -211,6 +212,7 @@ void meeting_go(struct meeting *meeting, struct meeting_case *to, int64_t now_ms
     if (strcmp(meeting->now, to->id) == 0)
         return;
     leave(meeting, now_ms);
+    to->opens = !meeting_was_entered(meeting, to);
     mem_put_text(meeting->now, sizeof meeting->now, to->id);
     meeting->since_ms = now_ms;
 }

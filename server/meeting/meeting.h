@@ -49,6 +49,7 @@ struct meeting_case {
     int64_t decided_ms;
     cJSON *stays; /* of people in its room, as in the room's attendance; NULL: none is known */
     char patient[64], label[164], approval[24]; /* masked, as the plan said last; "": not known. Not kept */
+    bool opens; /* it is now for the first time, and its first saved view is still to be shown. Not kept */
 };
 
 struct meeting {
@@ -91,7 +92,7 @@ NODISCARD bool meeting_remove(struct meeting *meeting, const char *case_id, stru
 struct meeting_case *meeting_next(const struct meeting *meeting, struct problem *problem);
 /* True if `from` is the case of now (NULL: none is); else false with problem conflict, code from. */
 NODISCARD bool meeting_is_at(const struct meeting *meeting, const char *from, struct problem *problem);
-/* The case is now. The meeting must not be over. Nothing happens when it is already. */
+/* The case is now, and opens if it never was. The meeting must not be over. Nothing happens when it is already. */
 void meeting_go(struct meeting *meeting, struct meeting_case *to, int64_t now_ms);
 void meeting_end(struct meeting *meeting, int64_t now_ms);
 /* Time for which this case was now, all its visits together. */

@@ -62,18 +62,33 @@ static void barred(void *context, const struct room *room, const char *user, con
         meetings_bar(context, meeting, user, link);
 }
 
+static bool is_open_now(const struct net *net, const struct meeting *meeting, void *connection,
+                        const struct room_present *present)
+{
+    const struct meeting_case *now = meeting_find(meeting, meeting->now);
+    enum wire_member_role role;
+    return now && meeting_moves_may(net, meeting, now, identity_at(connection), present, &role);
+}
+
 static void entered(void *context, struct room *room, void *connection)
 {
     struct meeting_case *one;
     struct room_present present;
     const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
-    if (!meeting || !room_present_of(room, connection, &present))
+    if (!meeting)
+        return;
+    const bool is_elsewhere = meeting->now[0] && strcmp(meeting->now, one->id) != 0;
+    if (!is_elsewhere)
+        room_set_waiting(room, connection, false);
+    if (!room_present_of(room, connection, &present))
         return;
     if (present.link[0] && present.user[0] && meeting_link_find((struct meeting *)meeting, present.link))
         meetings_came(context, meeting, present.user);
     meeting_moves_tell(context, meeting, one, room, connection);
-    /* a wall that was started anew begins at the address that it was given, whatever case is now */
-    if (present.role == WIRE_MEMBER_ROLE_WALL && meeting->now[0] && strcmp(meeting->now, one->id) != 0)
+    /* a wall that was started anew begins at the address that it was given, whatever case is now; who waits outside
+     * was away, perhaps, when the meeting came to a case that is open to them */
+    const bool waited = present.waits_outside && is_open_now(context, meeting, connection, &present);
+    if (is_elsewhere && (present.role == WIRE_MEMBER_ROLE_WALL || waited))
         meeting_moves_send(context, meeting, room, connection, false, "");
 }
 
@@ -130,10 +145,25 @@ static bool go_along(void *context, struct room *room, void *connection, struct 
     return true;
 }
 
+static bool about_case(void *context, const struct room *room, struct room_meeting_case *about)
+{
+    struct meeting_case *one;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    if (!meeting || !meeting_was_entered(meeting, one))
+        return false;
+    *about = (struct room_meeting_case){ .n = meeting_place(meeting, one) + 1,
+                                         .of = meeting->n_cases,
+                                         .is_over = meeting->ended_ms != 0 };
+    (void)snprintf(about->meeting, sizeof about->meeting, "%s", meeting->id);
+    (void)snprintf(about->name, sizeof about->name, "%s", meeting->name);
+    return true;
+}
+
 const struct room_meeting_callbacks meeting_doors = { .link = find_link,
                                                       .link_is_over = link_is_over,
                                                       .role = role_of,
                                                       .barred = barred,
                                                       .entered = entered,
                                                       .next = next,
-                                                      .go = go_along };
+                                                      .go = go_along,
+                                                      .about = about_case };

@@ -233,6 +233,19 @@ void meetings_bar(struct net *net, const struct meeting *meeting, const char *us
     meetings_touch(net, meeting);
 }
 
+bool meetings_opened(struct net *net, const struct meeting *meeting, const char *case_id)
+{
+    struct kept_meeting *kept = find(net, meeting->id);
+    struct meeting_case *one = kept && kept->meeting ? meeting_find(kept->meeting, case_id) : NULL;
+    struct meeting_case *pending = kept && kept->pending ? meeting_find(kept->pending, case_id) : NULL;
+    const bool opens = one && one->opens;
+    if (one)
+        one->opens = false;
+    if (opens && pending)
+        pending->opens = false;
+    return opens;
+}
+
 void meetings_room_changed(struct net *net, const char *room)
 {
     struct meeting_case *one;
@@ -305,7 +318,7 @@ static char *audit_text(const struct meeting *meeting, const struct net_meeting_
     const struct room_audit row = { .time_ms = clock_wall_ms(),
                                     .action = "meeting",
                                     .member = "",
-                                    .name = act->who->name,
+                                    .name = act->name ? act->name : act->who->name,
                                     .role = "",
                                     .address = act->address,
                                     .user = act->who->user,
@@ -315,7 +328,8 @@ static char *audit_text(const struct meeting *meeting, const struct net_meeting_
                                     .result = "done",
                                     .before = -1,
                                     .after = -1 };
-    cJSON *json = keep_audit_describe("", "", &row);
+    const struct meeting_case *of = meeting_find(meeting, act->case_id);
+    cJSON *json = keep_audit_describe(of ? of->room : "", of ? of->plan : "", &row);
     char *text = json_print(json);
     cJSON_Delete(json);
     cJSON_Delete(detail);

@@ -14,6 +14,8 @@ void meetings_touch(struct net *net, const struct meeting *meeting);
 /* A user came along to a room of the meeting; a member was removed from one. */
 void meetings_came(struct net *net, const struct meeting *meeting, const char *user);
 void meetings_bar(struct net *net, const struct meeting *meeting, const char *user, const char *link);
+/* The first saved view of the case is shown now. False: the case does not open, or it was shown already. */
+bool meetings_opened(struct net *net, const struct meeting *meeting, const char *case_id);
 /* The room has other people in it, or something was decided there. */
 void meetings_room_changed(struct net *net, const char *room);
 /* Takes over what the room knows of attendance and decisions. */

@@ -137,6 +137,7 @@ void meeting_moves_tell(struct net *net, const struct meeting *meeting, const st
     told.may_advance =
         !meeting->ended_ms && !present.is_guest &&
         (present.presents || present.role == WIRE_MEMBER_ROLE_PRESENTER || present.role == WIRE_MEMBER_ROLE_PLANNER);
+    told.opens = present.presents && here->opens && meetings_opened(net, meeting, here->id);
     room_tell_meeting(room, connection, &told);
 }
 
@@ -188,7 +189,7 @@ static void send_along(struct net *net, const struct meeting *meeting, struct ro
                                     .role = role,
                                     .is_guest = present.is_guest,
                                     .presents = presents };
-    told.asks = asks && present.looks_alone && !present.waits_outside;
+    told.asks = asks && !present.waits_outside && present.role != WIRE_MEMBER_ROLE_WALL;
     if (!told.asks) {
         meetings_came(net, meeting, present.user);
         told.asks = !room_seat_make(room->room, &seat, clock_now_us(), told.member, told.secret, &problem);
@@ -254,6 +255,16 @@ static bool presenter_comes(const struct net *net, const struct meeting *meeting
     return false;
 }
 
+/* True if somebody presents there now. */
+static bool has_presenter(const struct room *room)
+{
+    struct room_present present;
+    for (size_t i = 0; room_present_at(room, i, &present); i++)
+        if (present.presents && present.connection)
+            return true;
+    return false;
+}
+
 static void take_people_along(struct net *net, const struct meeting *meeting, const struct going *going,
                               const char *before)
 {
@@ -263,13 +274,20 @@ static void take_people_along(struct net *net, const struct meeting *meeting, co
     for (size_t i = 0; i < meeting->n_cases; i++) {
         struct net_room *room = rooms_find(net, meeting->cases[i]->room);
         struct room_present present;
-        for (size_t k = 0; room && room != rooms_find(net, to->room) && room_present_at(room->room, k, &present); k++) {
+        const bool is_presented = room && has_presenter(room->room);
+        for (size_t k = 0; room && room_present_at(room->room, k, &present); k++) {
+            if (room == rooms_find(net, to->room)) {
+                room_set_waiting(room->room, present.connection, false);
+                continue;
+            }
             const bool is_of_now = was == room, has_asked = strcmp(going->room, room_id(room->room)) == 0 &&
                                                             strcmp(going->member, present.id) == 0;
             const bool presents = keeps_presenter ? is_of_now && present.presents : has_asked;
-            if (present.connection) /* who stayed in the room of an earlier case is asked again */
-                send_along(net, meeting, room->room, present.connection,
-                           !has_asked && !presents && (present.looks_alone), presents, going->name);
+            /* who stayed in the room of an earlier case, or prepares a later one, is asked */
+            const bool asks = present.looks_alone || (!is_of_now && is_presented);
+            if (present.connection)
+                send_along(net, meeting, room->room, present.connection, !has_asked && !presents && asks, presents,
+                           going->name);
         }
     }
 }
@@ -388,6 +406,7 @@ static bool begin_write(struct going *going, struct problem *problem)
     }
     const struct net_meeting_act act = { .who = &going->who,
                                          .address = going->address,
+                                         .name = going->name,
                                          .what = going->only_prepares ? "prepared" : "case",
                                          .case_id = to->id };
     return net_meeting_commit(net, copy, &act, is_written, going, problem);

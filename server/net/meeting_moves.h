@@ -10,6 +10,7 @@ bool meeting_moves_may(const struct net *net, const struct meeting *meeting, con
  * on their own, they are asked first. */
 void meeting_moves_send(struct net *net, const struct meeting *meeting, struct room *from, void *connection, bool asks,
                         const char *by);
-/* Tells the member at this connection how the meeting stands. */
+/* Tells the member at this connection how the meeting stands; of those who present the first one also that the case
+ * opens. */
 void meeting_moves_tell(struct net *net, const struct meeting *meeting, const struct meeting_case *here,
                         struct room *room, void *connection);

@@ -35,6 +35,7 @@ NODISCARD struct meeting *net_meeting_new(struct net *net, const char *owner, st
 struct net_meeting_act {
     const struct identity *who;
     const char *address;
+    const char *name;    /* of the member who did it; NULL: that of the identity */
     const char *what;    /* "made", "changed", "case", "ended", ... */
     const char *case_id; /* "": none in particular */
     bool deletes;

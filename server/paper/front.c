@@ -55,6 +55,18 @@ static void add_later(struct paper *paper, const cJSON *item)
                "warn");
 }
 
+/* The meeting in which it was decided. */
+static void add_meeting(struct paper *paper)
+{
+    const cJSON *meeting = get(paper->record, "meeting");
+    if (text_of(meeting, "name")[0] && !json_flag(meeting, "is_over", false))
+        block_text(paper,
+                   written_format("In the meeting \xe2\x80\x9c%.320s\xe2\x80\x9d (%.63s), case %.0f of %.0f.",
+                                  text_of(meeting, "name"), text_of(meeting, "id"), json_number(meeting, "n", 0),
+                                  json_number(meeting, "of", 0)),
+                   "pale");
+}
+
 static void add_decision(struct paper *paper)
 {
     static const struct paper_column columns[] = { { "Decision", 24, 'l' },
@@ -72,6 +84,7 @@ static void add_decision(struct paper *paper)
                            written_time(paper, number_of(item, "created_ms"), time)),
             "");
     cJSON_Delete(person);
+    add_meeting(paper);
     if (text_of(body, "corrects")[0])
         block_text(paper, written_format("It corrects the decision %.63s.", text_of(body, "corrects")), "pale");
     cJSON_ArrayForEach(later, paper->source->decisions)

@@ -91,7 +91,8 @@ static bool write_members(sqlite3 *db, const struct store_room *room, struct err
         return false;
     sqlite3_stmt *row = sql_prepare(db,
                                     "INSERT INTO members(room, place, id, name, color, role, secret_hash, has_left,"
-                                    " user, is_guest, link) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
+                                    " user, is_guest, link, waits_outside)"
+                                    " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
                                     err);
     bool ok = row != NULL;
     for (size_t i = 0; ok && i < room->n_members; i++) {
@@ -107,6 +108,7 @@ static bool write_members(sqlite3 *db, const struct store_room *room, struct err
         sql_bind_text(row, 9, member->user);
         (void)sqlite3_bind_int(row, 10, member->is_guest);
         sql_bind_text(row, 11, member->link);
+        (void)sqlite3_bind_int(row, 12, member->waits_outside);
         ok = sql_step(row, "writing members", err);
     }
     (void)sqlite3_finalize(row);
@@ -303,6 +305,7 @@ static bool read_member(sqlite3_stmt *row, void *to)
     sql_text(row, 6, member->user, sizeof member->user);
     member->is_guest = sqlite3_column_int(row, 7) != 0;
     sql_text(row, 8, member->link, sizeof member->link);
+    member->waits_outside = sqlite3_column_int(row, 9) != 0;
     return true;
 }
 
@@ -372,8 +375,8 @@ struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err
     bool ok =
         read_row(db, id, room, err) &&
         rows_read_list(db,
-                       "SELECT id, name, color, role, secret_hash, has_left, user, is_guest, link FROM members"
-                       " WHERE room = ?1 ORDER BY place",
+                       "SELECT id, name, color, role, secret_hash, has_left, user, is_guest, link, waits_outside"
+                       " FROM members WHERE room = ?1 ORDER BY place",
                        id, sizeof(struct store_member), STORE_MAX_MEMBERS, read_member, &members, &room->n_members,
                        err) &&
         rows_read_list(db,

@@ -93,6 +93,8 @@ static const char *const steps[] = {
     "CREATE TABLE meetings(id TEXT PRIMARY KEY, owner TEXT NOT NULL, body TEXT NOT NULL) STRICT;"
     "CREATE TABLE meeting_cases(meeting TEXT NOT NULL REFERENCES meetings(id) ON DELETE CASCADE, place INTEGER NOT NULL,"
     " id TEXT NOT NULL, plan TEXT NOT NULL, room TEXT NOT NULL, body TEXT NOT NULL, PRIMARY KEY(meeting, place)) STRICT;",
+    /* 11: who waits outside of a case of a meeting that is not open to them */
+    "ALTER TABLE members ADD COLUMN waits_outside INTEGER NOT NULL DEFAULT 0;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

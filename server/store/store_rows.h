@@ -28,6 +28,7 @@ struct store_member {
     unsigned char secret_hash[STORE_HASH_BYTES]; /* of auth/secret.h */
     bool has_left;                               /* it may come back */
     bool is_guest;
+    bool waits_outside; /* the meeting was in a case that is not open to it */
 };
 
 struct store_link {

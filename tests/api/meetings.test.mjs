@@ -110,6 +110,7 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     );
     assert.ok((await api('/session/first', {}, 'POST', { token, user: 'ada', name: 'Ada', password })).status < 300);
     const admin = await signIn('ada');
+    people.admin = admin;
     for (const [user, name] of Object.entries({ pat: 'Pat Lee', rae: 'Rae', zoe: 'Zoe', mia: 'Mia' }))
       assert.equal((await api('/users', admin, 'POST', { user, name, password, groups: '' })).status, 204);
     [pat, rae, zoe, mia] = [await signIn('pat'), await signIn('rae'), await signIn('zoe'), await signIn('mia')];
@@ -306,6 +307,7 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     for (const client of [people.pat2, people.rae, people.zoe, people.guest2]) client.seen = client.messages.length;
     people.guest2.send({ type: 'view.open', view: 1, document: { kind: '3d', number: 1, size_px: [64, 64] }, follow: false });
     await people.guest2.until(() => people.guest2.frames.length, 'a picture of their own');
+    assert.equal((await people.pat2.message('meeting')).opens, true, 'whoever presents begins with the first saved view');
     people.pat2.send({ type: 'meeting.next', to: cases[2], from: cases[1] });
     const [ofPat, ofRae, ofZoe, ofGuest] = await Promise.all(['pat2', 'rae', 'zoe', 'guest2'].map((name) => toldCase(people[name])));
     assert.deepEqual([ofRae.open, ofRae.asks, ofRae.n], [true, false, 3]);
@@ -316,8 +318,13 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     const seat = await toldCase(people.guest2);
     assert.deepEqual([seat.asks, seat.room], [false, ofPat.room]);
     people.room3 = ofPat.room;
-    people.pat3 = await welcomed(pat, ofPat.room, seatIn(ofPat));
     people.rae3 = await welcomed(rae, ofRae.room, seatIn(ofRae));
+    assert.equal((await people.rae3.message('meeting')).opens, false, 'who does not present');
+    people.pat3 = await welcomed(pat, ofPat.room, seatIn(ofPat));
+    assert.equal((await people.pat3.message('meeting')).opens, true);
+    const tab = await welcomed(pat, ofPat.room);
+    assert.equal((await tab.message('meeting')).opens, false, 'a second time');
+    tab.cut();
     people.guest3 = await welcomed({}, seat.room, seatIn(seat));
     assert.deepEqual((await people.rae3.message('meeting')).n_now, 3);
     people.wall3 = await welcomed({}, people.room2, { link: people.wallLink.token }).catch(() => null);
@@ -406,12 +413,51 @@ describe('A meeting of three cases', { concurrency: false }, () => {
       ({ status }) => status === 200,
     );
     check(await ok(`/meetings/${meeting}/minutes`, pat));
-    const back = await welcomed(rae, people.room3, seatIn(people.rae3.first));
-    assert.deepEqual((await back.message('meeting')).n_now, 3);
+    people.back = await welcomed(rae, people.room3, seatIn(people.rae3.first));
+    assert.deepEqual((await people.back.message('meeting')).n_now, 3);
+  });
+
+  test('who waits outside does so also after a restart, and comes along when a case became open to them while they were away', async () => {
+    const go = (to, from) => ok(`/meetings/${meeting}/case`, pat, 'POST', { case: to, from });
+    people.back.seen = people.back.messages.length;
+    await go(cases[1], cases[2]);
+    assert.equal((await toldCase(people.back)).open, false);
+    assert.equal(await daemon.stop(), 0);
+    await start();
+    await until(
+      () => api(`/meetings/${meeting}`, pat),
+      ({ status }) => status === 200,
+    );
+    const waiting = await welcomed(rae, people.room3, seatIn(people.rae3.first));
+    const told = await waiting.message('meeting');
+    assert.deepEqual([told.waits, told.open, told.n_now, told.now], [true, false, 2, '']);
+    waiting.cut();
+    await go(cases[0], cases[1]);
+    const again = await welcomed(rae, people.room3, seatIn(people.rae3.first));
+    const along = await again.message('meeting.case');
+    assert.deepEqual([along.open, along.asks, along.n, along.room], [true, false, 1, people.room]);
+    const there = await welcomed(rae, along.room, seatIn(along));
+    assert.deepEqual([(await there.message('meeting')).waits, (await there.message('meeting')).opens], [false, false]);
+    await go(cases[2], cases[0]);
+    again.cut();
+    there.cut();
+  });
+
+  test('the audit has each case that it went to: who, which room and plan', async () => {
+    const { rows } = await ok('/audit?action=meeting', people.admin);
+    const of = (what) => rows.filter(({ detail }) => detail.meeting === meeting && detail.what === what);
+    const went = of('case').reverse(); // the newest first
+    assert.deepEqual(
+      went.map(({ user, detail, room }) => [user, detail.case, room]),
+      [0, 1, 2, 1, 0, 2].map((at) => ['pat', cases[at], [people.room, people.room2, people.room3][at]]),
+    );
+    assert.ok(went.every(({ plan, name, address }) => /^plan-[0-9a-f]{16}$/.test(plan) && name === 'Pat Lee' && address));
   });
 
   test('when it is over it stays readable, its agenda and links do not change any more', async () => {
     const over = await ok(`/meetings/${meeting}/end`, pat, 'POST', {});
+    const [ended] = (await ok('/audit?action=meeting', people.admin)).rows.filter(({ detail }) => detail.what === 'ended');
+    assert.deepEqual([ended.user, ended.detail.meeting], ['pat', meeting]);
     assert.deepEqual([over.state, over.case, over.may], ['over', null, { edit: false, advance: false }]);
     assert.deepEqual(
       over.cases.map(({ state }) => state),

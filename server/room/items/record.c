@@ -114,8 +114,25 @@ char *record_of(const struct room *room, const struct item *item, struct problem
     return text;
 }
 
+/* Which case of a meeting the room is; NULL: of none that has come to it. */
+static cJSON *describe_meeting(const struct room *room)
+{
+    const struct room_meeting_callbacks *meeting = room->callbacks.meeting;
+    struct room_meeting_case about;
+    if (!meeting || !meeting->about || !meeting->about(room->callbacks.context, room, &about))
+        return NULL;
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "id", about.meeting);
+    cJSON_AddStringToObject(json, "name", about.name);
+    cJSON_AddNumberToObject(json, "n", (double)about.n);
+    cJSON_AddNumberToObject(json, "of", (double)about.of);
+    cJSON_AddBoolToObject(json, "is_over", about.is_over);
+    return json;
+}
+
 cJSON *room_record(const struct room *room)
 {
+    cJSON *meeting = describe_meeting(room);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "format", "beamroom-record");
     cJSON_AddNumberToObject(json, "version", 1);
@@ -125,6 +142,8 @@ cJSON *room_record(const struct room *room)
     cJSON_AddNumberToObject(json, "revision", room->shared.revision);
     cJSON_AddNumberToObject(json, "made_ms", (double)clock_wall_ms());
     cJSON_AddNumberToObject(json, "created_ms", (double)room->created_at_s * 1000);
+    if (meeting)
+        json_add(json, "meeting", meeting);
     json_add(json, "present", presence_list(room));
     cJSON_AddNumberToObject(json, "n_present_dropped", presence_n_dropped(room));
     json_add(json, "checklist", rows_of(room, WIRE_ITEM_KIND_CHECK));

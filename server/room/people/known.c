@@ -30,6 +30,7 @@ void known_write(const struct member *member, struct store_member *kept)
     (void)snprintf(kept->user, sizeof kept->user, "%s", member->user);
     (void)snprintf(kept->link, sizeof kept->link, "%s", member->link);
     kept->is_guest = member->is_guest;
+    kept->waits_outside = member->waits_outside;
     memcpy(kept->secret_hash, member->secret_hash, sizeof kept->secret_hash);
 }
 
@@ -45,6 +46,7 @@ void known_read(const struct store_member *kept, struct member *member)
     who_key_of_user(kept->user, member->person); /* of others it is not kept */
     (void)snprintf(member->link, sizeof member->link, "%s", kept->link);
     member->is_guest = kept->is_guest;
+    member->waits_outside = kept->waits_outside;
     for (int i = 0; i < ROLES_N_COLORS; i++) {
         char color[8];
         (void)snprintf(color, sizeof color, "#%06x", (unsigned)color_rgb(i) & 0xffffff);

@@ -10,6 +10,7 @@
 #include "server/room/people/member.h"
 #include "server/room/people/removal.h"
 #include "server/room/people/room_moving.h"
+#include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/presence.h"
 #include "server/room/state/roles.h"
@@ -60,8 +61,10 @@ bool room_present_of(const struct room *room, void *connection, struct room_pres
 void room_set_waiting(struct room *room, void *connection, bool waits)
 {
     struct member *member = member_of_connection(room, connection);
-    if (member)
-        member->waits_outside = waits;
+    if (!member || member->waits_outside == waits)
+        return;
+    member->waits_outside = waits;
+    room_event(room, ROOM_MEMBERS, NULL); /* it is kept */
 }
 
 void room_tell_meeting(struct room *room, void *connection, const struct message_meeting *told)

@@ -132,6 +132,11 @@ struct room_meeting_link {
 
 /* A room as the room of a case of a meeting. Each is asked of every room; of one that is in no meeting it says false or
  * does nothing. */
+struct room_meeting_case {
+    char meeting[64], name[321];
+    size_t n, of; /* its place, from 1 on, among so many */
+    bool is_over;
+};
 struct room_meeting_callbacks {
     /* The token is that of a link of the meeting, which opens the case of now, and this is the room of that case. */
     bool (*link)(void *context, const struct room *room, const struct identity *who, const char *token,
@@ -150,6 +155,8 @@ struct room_meeting_callbacks {
                  struct problem *problem);
     /* The member at this connection goes along to the case of now. */
     bool (*go)(void *context, struct room *room, void *connection, struct problem *problem);
+    /* Which case the room is in a meeting that has come to it. False: in none. */
+    bool (*about)(void *context, const struct room *room, struct room_meeting_case *about);
 };
 
 struct room_callbacks {

@@ -272,6 +272,27 @@ static void a_case_takes_the_sum_of_its_visits(void **state)
     meeting_free(meeting);
 }
 
+static void a_case_opens_when_it_is_entered_first_and_not_when_it_is_returned_to(void **state)
+{
+    struct problem problem;
+    struct meeting *meeting = meeting_create("m-1", "", 1);
+    struct meeting_case *one = meeting_add(meeting, "a", "", NULL, &problem),
+                        *two = meeting_add(meeting, "b", "", NULL, &problem);
+    (void)state;
+    assert_false(one->opens);
+    meeting_go(meeting, one, 10);
+    assert_true(one->opens);
+    assert_false(two->opens);
+    one->opens = false; /* it was shown */
+    meeting_go(meeting, one, 11);
+    assert_false(one->opens);
+    meeting_go(meeting, two, 20);
+    meeting_go(meeting, one, 30);
+    assert_false(one->opens);
+    assert_false(two->opens); /* nobody has shown it while the case was now */
+    meeting_free(meeting);
+}
+
 static void a_clock_that_is_set_back_takes_no_time_away(void **state)
 {
     struct problem problem = { 0 };
@@ -441,6 +462,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_moves_agree_with_the_model),
         cmocka_unit_test(a_case_takes_the_sum_of_its_visits),
+        cmocka_unit_test(a_case_opens_when_it_is_entered_first_and_not_when_it_is_returned_to),
         cmocka_unit_test(a_clock_that_is_set_back_takes_no_time_away),
         cmocka_unit_test(more_visits_than_are_told_apart_still_count),
         cmocka_unit_test(who_is_named_may_come_with_at_most_their_role),

@@ -142,6 +142,12 @@ static void a_database_of_version_7_keeps_its_rooms_and_gets_meetings(void **sta
     assert_string_equal(read->members[0].user, "ann");
     assert_string_equal(read->links[0].name, "surgery");
     assert_true(read->links[0].allows_guests);
+    assert_false(read->members[0].waits_outside);
+    read->members[0].waits_outside = true;
+    assert_true(store_write(world.store, read, 23)); /* takes it */
+    store_answer_free(store_world_await(&world, STORE_WRITTEN));
+    read = store_world_read(&world, "7q4k-m2wz");
+    assert_true(read->members[0].waits_outside);
     store_room_free(read);
     store_answer_free(opened);
     write_meeting(write_of("m-1", "{}", 1));

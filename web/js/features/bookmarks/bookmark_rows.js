@@ -33,10 +33,13 @@ export async function attempt({ ui }, run, done = '') {
 /** A sentence about the parts of a saved view that could not be shown; '' when it is whole. */
 const lost = ({ report, n_report: all }) => (all ? (all > 1 ? say.lost : say.oneLost)({ n: all, detail: report[0].detail }) : '');
 
+/** A sentence about what of a saved view is not as it was saved; '' when it is. */
+const whyNot = (opened) => [lost(opened), toldOfMerge(opened.merge)].filter(Boolean).join(' ');
+
 function told(world, opened, isQuiet = false) {
   if (!opened) return;
   const isReported = opened.n_report > 0;
-  const why = [lost(opened), toldOfMerge(opened.merge)].filter(Boolean).join(' ');
+  const why = whyNot(opened);
   if (why)
     world.ui.notify(
       'warn',
@@ -106,11 +109,23 @@ function onKey(event) {
   void step(playing, by);
 }
 
-export async function play(world, row = null) {
+async function playFrom(world, row) {
   endPlaying();
   playing = world;
   addEventListener('keydown', onKey, true);
-  told(world, await attempt(world, () => bookmarksIn(world).play(row)), true);
+  return attempt(world, () => bookmarksIn(world).play(row));
+}
+
+export const play = async (world, row = null) => told(world, await playFrom(world, row), true);
+
+/** A meeting has come to the case of this room: the first saved view is shown to everybody, several are a presentation that begins with it. */
+export async function beginPrepared(world) {
+  const rows = bookmarksOf(world.room);
+  const opened = rows.length > 1 ? await playFrom(world, rows[0]) : await attempt(world, () => bookmarksIn(world).show(rows[0]));
+  if (!opened) return;
+  const words = (rows.length > 1 ? say.preparedFirst : say.prepared)({ name: opened.name, n: rows.length });
+  const why = whyNot(opened);
+  world.ui.notify(why ? 'warn' : 'ok', [words, why].filter(Boolean).join(' '), 'saved', { word: say.undo, act: () => world.undo.undo() });
 }
 
 function endPlaying() {

@@ -36,6 +36,11 @@ function resumeBookmark(world) {
 
 /** @type {import('../index.js').Feature} */
 export const bookmarks = {
+  make: (world) => {
+    world.beginPrepared = async () => {
+      if (n(world)) (await parts.load(), parts.loaded.peek())?.beginPrepared(world);
+    };
+  },
   sections: [
     {
       id: 'saved',

@@ -15,9 +15,8 @@ function stateOf({ state, decided_ms }) {
   return { open: say.open, now: say.now, left: say.left, closed: say.closed }[state];
 }
 
-function row(one, index, { told, next }) {
-  const { may_advance, over } = told.value;
-  const mayGo = may_advance && !over && one.state !== 'closed' && one.state !== 'now';
+function row(one, index, { told, mayAdvance, next }) {
+  const mayGo = mayAdvance() && !told.value.over && one.state !== 'closed' && one.state !== 'now';
   const n = index + 1;
   const words = html`<span class="case-n">${n}</span><span class="case-words"><b>${one.patient ?? (one.state === 'closed' ? '' : say.noIdentity)}</b> <span class="dim">${one.label ?? ''}</span></span>
     <span class="case-state" data-state=${one.state}>${stateOf(one)}</span><span class="dim case-time">${one.spent_ms >= 30000 ? say.spent({ min: Math.max(1, Math.round(one.spent_ms / 60000)) }) : ''}</span>`;
@@ -26,12 +25,12 @@ function row(one, index, { told, next }) {
 
 /** Where the meeting is, and the way there or on. */
 function standing({ meeting, ui }, told) {
-  const { along, next } = meeting.peek();
+  const { along, mayAdvance, next } = meeting.peek();
   if (told.over) return html`<p class="dim">${say.meetingOver}</p>`;
   if (!told.n_now) return html`<p class="dim">${say.notBegun}</p>`;
   if (told.now !== told.here)
     return html`<p class="case-standing"><span>${say.meetingAt({ n: told.n_now })}</span>${told.open ? html`<button @click=${along}>${say.goAlong}</button>` : nothing}</p>`;
-  if (!told.may_advance || told.n_now === told.of) return nothing;
+  if (!mayAdvance() || told.n_now === told.of) return nothing;
   return html`<p class="case-standing"><button title=${say.nextIs} @click=${() => next()}>${say.next}${keyMark(ui.keys.text('nextCase'))}</button></p>`;
 }
 

@@ -26,6 +26,7 @@ export function join(world) {
   const asks = signal(null); // what is asked before the meeting goes on: {go}
   const isInviting = signal(false); // the card shows links
   const list = signal(null); // the agenda as GET gave it
+  const opens = signal(false); // the room's first saved view is to be shown
   let hidden = null;
 
   const call = (method, path, body) =>
@@ -54,6 +55,7 @@ export function join(world) {
     if (message.type === 'meeting') {
       told.value = message;
       waits.value = message.waits ? { n: message.n_now, of: message.of } : null;
+      if (message.opens) opens.value = true;
       if (isShown(ui.popover.peek())) void look();
     } else if (message.type === 'meeting.case') taken(message);
   };
@@ -76,6 +78,9 @@ export function join(world) {
     list.value = await call('GET', '').catch(() => list.peek());
   }
 
+  /** Also of whom control was given to since the server told. */
+  const mayAdvance = () => told.value?.may_advance || (room.following.isPresenting.value && !isGuest());
+
   const send = (to) => {
     asks.value = null;
     ui.popover.value = '';
@@ -86,7 +91,7 @@ export function join(world) {
   const next = (to = '') => {
     const now = told.peek();
     if (!now || now.over) return;
-    if (!now.may_advance) return ui.notify('ok', say.notYou, topic);
+    if (!mayAdvance()) return ui.notify('ok', say.notYou, topic);
     if (!to && now.n_now === now.of) return ui.notify('ok', say.isLast, topic);
     if (isDecisionWritten()) asks.value = { go: () => send(to) };
     else send(to);
@@ -103,6 +108,7 @@ export function join(world) {
     call,
     take,
     along,
+    mayAdvance,
     next,
     look,
     stay: () => {
@@ -123,10 +129,20 @@ export function join(world) {
     if (isShown(ui.popover.value)) untracked(() => void look());
   });
   const stopOverlay = overlay(world, meeting);
+  const stopOpening = effect(() => {
+    const isReady = room.canChange.value && room.plan.value && ui.visible.value.every((number) => room.view(number).isOpen.value);
+    if (!opens.value || !isReady) return;
+    queueMicrotask(() => {
+      if (!opens.peek()) return;
+      opens.value = false;
+      if (room.following.isPresenting.peek()) void world.beginPrepared();
+    });
+  });
   hidden = () => {
     hidden = null;
     stopTick();
     stopLook();
+    stopOpening();
     stopOverlay();
   };
   return meeting;

@@ -83,6 +83,8 @@ export const say = sentences('record.later', {
   hashOver: 'SHA-256 over the names and contents of {n} {n|file|files}',
   room: 'Room',
   roomIs: '{room}, made {time} UTC; scene revision {revision}',
+  meeting: 'Meeting',
+  meetingIs: '“{name}” ({meeting}), case {n} of {of}',
   audit: 'Audit',
   auditIs: 'row {row}, head {head}',
   program: 'Program',

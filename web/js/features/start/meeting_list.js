@@ -50,6 +50,16 @@ function stateOf(one) {
 
 const approvals = { APPROVED: say.approved, UNAPPROVED: say.unapproved, REJECTED: say.rejected };
 
+/** The room of a case: before it was entered to save views there, which the meeting then begins with; afterwards to look at it again. */
+function roomAct(meetings, id, one, name) {
+  if (one.state === 'closed' || !one.plan) return nothing;
+  if (one.state === 'open')
+    return html`<button class="ghost small" aria-label=${say.prepareCase({ name })} title=${say.prepareIs} @click=${() => void meetings.prepare(id, one.id)}>${say.prepare}</button>`;
+  return one.room
+    ? html`<a class="button ghost small" href=${`/rooms/${one.room}`} aria-label=${say.openCase({ name })}>${say.open}</a>`
+    : nothing;
+}
+
 /** A case of the agenda; who may edit drags it, moves it by its buttons, or takes it off. */
 function caseRow(meetings, meeting, one, index) {
   const { id, cases, may } = meeting;
@@ -74,7 +84,7 @@ function caseRow(meetings, meeting, one, index) {
     <span class="n">${index + 1}</span><b class="whom">${one.state === 'closed' ? say.caseN({ n: index + 1 }) : one.patient || say.unknown}</b><span class="dim about">${facts}</span><span class="case-state">${stateOf(one)}</span>
     ${
       may.edit
-        ? html`<span class="case-acts"><button class="icon-button small" ?disabled=${!canMove || index === 0} aria-label=${say.moveUp({ name })} title=${say.moveUp({ name })} @click=${() => meetings.step(meeting, index, -1)}>${arrow(true)}</button>
+        ? html`<span class="case-acts">${roomAct(meetings, id, one, name)}<button class="icon-button small" ?disabled=${!canMove || index === 0} aria-label=${say.moveUp({ name })} title=${say.moveUp({ name })} @click=${() => meetings.step(meeting, index, -1)}>${arrow(true)}</button>
       <button class="icon-button small" ?disabled=${!canMove || index === cases.length - 1} aria-label=${say.moveDown({ name })} title=${say.moveDown({ name })} @click=${() => meetings.step(meeting, index, 1)}>${arrow(false)}</button>
       <button class="icon-button small" ?disabled=${entered} aria-label=${say.takeOff({ name })} title=${say.takeOff({ name })} @click=${() => meetings.remove(id, one.id)}>${icon('close', 12)}</button></span>`
         : nothing
@@ -94,6 +104,7 @@ function meetingCard(meetings, meeting, state) {
   const about = [starts_ms && when(starts_ms), states[meeting.state], n_in > 0 && say.nIn({ n: n_in })].filter(Boolean).join(' · ');
   const canGoIn = meeting.state !== 'over' && cases.length > 0 && (meeting.state === 'running' || may.advance);
   return html`<section class="meeting" data-meeting=${id} aria-labelledby=${`meeting-${id}`}><div class="list-head"><h2 id=${`meeting-${id}`}>${name}</h2><span class="dim">${about}</span><span class="grow"></span>
+      ${meeting.state === 'planned' ? nothing : html`<a class="button ghost" href=${`/meetings/${id}/minutes`}>${say.minutes}</a>`}
       ${canGoIn ? html`<button class="primary" @click=${() => meetings.goIn(id)}>${meeting.state === 'running' ? say.goIn : say.begin}</button>` : nothing}</div>
     ${cases.length ? html`<ol class="agenda">${cases.map((one, index) => caseRow(meetings, meeting, one, index))}</ol>` : html`<p class="empty">${say.noCases}</p>`}
     ${

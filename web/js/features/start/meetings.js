@@ -80,6 +80,13 @@ export class MeetingsState {
     return this.#change(() => this.#api.call('DELETE', `meetings/${id}/cases/${removed}`));
   }
 
+  /** Enters the room of a case that the meeting has not come to. */
+  async prepare(id, prepared) {
+    if (!(await this.#change(() => this.#api.call('POST', `meetings/${id}/cases/${prepared}/room`, { body: {} })))) return;
+    const { room, plan } = this.agendas.value[id].cases.find((one) => one.id === prepared) ?? {};
+    if (room) this.#enter(room, plan);
+  }
+
   /** Enters the room of the case of now; who may begin the meeting begins it. */
   async goIn(id) {
     let meeting = this.agendas.value[id];
