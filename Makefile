@@ -260,15 +260,15 @@ test-render: $(RENDER_RUN)
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
 # Programs that make test leaves out. test-deep has these units under the sanitizers, which hammer at processes, sockets and archives or wait for many
-# seconds; and these pictures, of every back end against the others, from the same build as make test.
+# seconds; and these pictures, of every back end against the others or drawn in turns, from the same build as make test.
 DEEP_UNIT := $(patsubst %,$(B)/unit/test_%,cache_quota fleet_hostile fleet_restarts fleet_silence tls_hammer)
-DEEP_RENDER := $(patsubst %,$(B)/render/test_%,caps cut_agreement occlusion representations wash_agree)
+DEEP_RENDER := $(patsubst %,$(B)/render/test_%,caps cut_agreement occlusion pauses representations wash_agree)
 test-render-long: $(DEEP_RENDER)
 	$(Q)PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,render-long)" $(DEEP_RENDER)
 # Long ones, from a queue of their own: LONG_NODE has files of which test-api and test-web run a part (LONG_TESTS=rest: what they leave out), DEEP_NODE those that they leave
 # out whole. Each part of the page and of the interface has tests in what they run: whole_meeting.test.mjs has one of each thing that people do together.
 LONG_TESTS ?= 1
-DEEP_NODE := tests/api/missing.test.mjs tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,daemon_restart guide meeting notes planner_hour pointers record recording restart roster saved)
+DEEP_NODE := tests/api/hung.test.mjs tests/api/missing.test.mjs tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,daemon_restart guide meeting notes planner_hour pointers record recording restart roster saved)
 LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/api/rest.test.mjs $(patsubst %,tests/web/%.test.mjs,axe beam_draft beam_eye bookmarks cases charts clip display dose greys image language layout legend measure page pointed \
     regions shell snapshot start touch tracks upload views watch)
 # What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest of the api tests wait for most of their time.

@@ -1,14 +1,9 @@
 // Connections to the daemon: limits in all and per address, form of requests, stopping the daemon with connections open.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { createInterface } from 'node:readline';
 import { after, before, describe, test } from 'node:test';
-import { call, openPlan, sleep, startDaemon, until } from './daemon.mjs';
+import { call, openPlan, startDaemon, until } from './daemon.mjs';
 import { FIRST, HOST, exchange, open, openEach, startWithPlan, statuses } from './plain_connection.mjs';
-import { holdThread, threadNamed } from './hold.mjs';
+import { startManager } from './service_manager.mjs';
 import { Client } from './ws_client.mjs';
 
 describe('WebSockets of one address', () => {
@@ -165,33 +160,6 @@ describe('a refused upload', () => {
   });
 });
 
-describe('connections that are gone while their requests wait', () => {
-  test('count until the requests are over', async (t) => {
-    const daemon = await startDaemon({ args: ['--stub'] });
-    t.after(() => daemon.stop());
-    const held = await holdThread(await threadNamed(daemon.child.pid, 'net')); /* the API answers no request */
-    if (!held) return void t.skip('a thread of another program may not be stopped here');
-    const page = async (from) => {
-      const connection = open(daemon.url, `GET /index.html HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`, { from });
-      await connection.answered;
-      connection.socket.destroy();
-      return statuses(connection.text)[0];
-    };
-    try {
-      const askAndGo = async () => {
-        const some = Array.from({ length: 20 }, () => open(daemon.url, FIRST, { from: '127.0.6.1', ms: 60000 }));
-        await sleep(100); /* a request that has not arrived by then is not counted; others follow */
-        for (const c of some) c.socket.resetAndDestroy();
-        return page('127.0.6.1');
-      };
-      assert.equal(await until(askAndGo, (status) => status === 429), 429);
-      assert.equal(await page('127.0.6.2'), 200, 'another address is served');
-    } finally {
-      await daemon.stop();
-    }
-  });
-});
-
 describe('a page of another origin', () => {
   let daemon, room;
   before(async () => {
@@ -257,30 +225,7 @@ describe('a condition', () => {
     });
 });
 
-describe('the process', { concurrency: 4 }, () => {
-  // each test waits for some seconds
-  /** A socket like a service manager's, and the datagrams it received. */
-  async function startManager() {
-    const folder = mkdtempSync(join(tmpdir(), 'beamroom-notify-')),
-      path = join(folder, 'notify');
-    const child = spawn('python3', [
-      '-uc',
-      'import socket,sys\ns=socket.socket(socket.AF_UNIX,socket.SOCK_DGRAM)\ns.bind(sys.argv[1])\nprint("bound")\nwhile True: print(s.recv(4096).decode())',
-      path,
-    ]);
-    const lines = [];
-    createInterface({ input: child.stdout }).on('line', (line) => lines.push(line));
-    await until(() => lines.length, Boolean);
-    return {
-      path,
-      lines: () => lines.slice(1),
-      stop: () => {
-        child.kill();
-        rmSync(folder, { recursive: true, force: true });
-      },
-    };
-  }
-
+describe('the process', () => {
   test('tells the service manager that it is ready, that it lives, and that it stops', async () => {
     const manager = await startManager();
     const daemon = await startDaemon({ args: ['--stub'], env: { NOTIFY_SOCKET: manager.path, WATCHDOG_USEC: '800000' } });
@@ -296,33 +241,4 @@ describe('the process', { concurrency: 4 }, () => {
       manager.stop();
     }
   });
-
-  for (const thread of ['net', 'front'])
-    test(`whose ${thread} thread hangs no longer says that it lives, and ends within 10 s of SIGTERM all the same`, async (t) => {
-      const manager = await startManager();
-      const daemon = await startDaemon({
-        args: ['--stub'],
-        env: { NOTIFY_SOCKET: manager.path, WATCHDOG_USEC: '800000' },
-      });
-      try {
-        const held = await holdThread(await threadNamed(daemon.child.pid, thread));
-        if (!held) return void t.skip('a thread of another program may not be stopped here');
-        await until(daemon.log, (log) => log.includes(`the ${thread} thread has not moved`));
-        assert.match(daemon.log(), new RegExp(`the ${thread} thread has not moved`));
-        await until(manager.lines, (lines) => lines.includes('READY=1'));
-        let n = -1; // datagrams sent before may still arrive
-        for (let tries = 0; tries < 8 && n !== manager.lines().length; tries++) {
-          n = manager.lines().length;
-          await sleep(1600); /* twice the watchdog's time */
-        }
-        assert.equal(manager.lines().length, n, 'nothing is told any more');
-        const began = performance.now();
-        assert.equal(await daemon.stop(), 1, 'ended by itself');
-        assert.ok(performance.now() - began < 30000, `after ${performance.now() - began} ms`);
-        assert.match(daemon.log(), /the process ends without it/);
-      } finally {
-        await daemon.stop();
-        manager.stop();
-      }
-    });
 });

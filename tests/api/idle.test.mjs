@@ -208,21 +208,3 @@ test('a renderer that stops before every picture is tried again after pauses tha
     await picture(ann);
   });
 });
-
-test('a daemon that was stopped for a while finds its renderers alive', () =>
-  withDaemon([], async ({ daemon, enter, ready, newRoom }) => {
-    const ann = await enter(await newRoom('head-1'));
-    await ready(ann);
-    await picture(ann);
-    daemon.child.kill('SIGSTOP');
-    await sleep(12000); // longer than a renderer may be silent
-    daemon.child.kill('SIGCONT');
-    ann.send({
-      type: 'view.patch',
-      view: 1,
-      input: 7,
-      patch: { camera: { position_mm: [9, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } },
-    });
-    await ann.frame((f) => f.isStill && f.input === 7);
-    assert.doesNotMatch(daemon.log(), /did not|starting it again/);
-  }));

@@ -1,6 +1,7 @@
 // Around the panes: keys from anywhere and the list in which they are changed.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
+import { until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
 import { full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { load } from './unit/page.mjs';
@@ -172,8 +173,7 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
       const point = [slices.sagittal, slices.coronal, slices.axial].map(({ position_mm: mm }) => mm);
       return toPicture((await header(page, 2)).clip_from_lps_mm, point);
     };
-    for (let n = 0; n < 100 && Math.abs((await clicked())[0] - 0.6) > 0.02; n++) await page.waitForTimeout(30);
-    const [x, y] = await clicked();
+    const [x, y] = await until(clicked, ([across]) => Math.abs(across - 0.6) < 0.02);
     assert.ok(Math.abs(x - 0.6) < 0.02 && Math.abs(y - 0.45) < 0.02, `the crosshair is where the click was: ${x} ${y}`);
     await shoot(page, 'page-200');
     await page.reload();
@@ -233,8 +233,8 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     await page.mouse.down();
     await page.mouse.move(box.x + 60, box.y + 40, { steps: 3 });
     await page.mouse.up();
-    for (let n = 0; n < 100 && !Object.keys((await world.scene(room)).measures).length; n++) await page.waitForTimeout(30);
-    assert.equal(Object.keys((await world.scene(room)).measures).length, 1);
+    const made = async () => Object.keys((await world.scene(room)).measures).length;
+    assert.equal(await until(made, Boolean), 1);
     await page.keyboard.press('Escape');
     await page.getByRole('button', { name: 'Panes', exact: true }).click();
     const menu = page.locator('.view-panes');
