@@ -37,6 +37,18 @@ bool material_of_word(const char *word, struct material *material, struct error 
     return error_set(err, ERROR_NOT_FOUND, "'%.24s' is no material; there are air, %s", word, words);
 }
 
+bool material_set_element(struct material *material, const char *symbol, double fraction, struct error *err)
+{
+    static const char *const symbols[N_ELEMENTS] = { "H", "C", "N", "O", "Na", "Mg", "P", "S", "Cl", "K", "Ca" };
+    for (int i = 0; i < N_ELEMENTS; i++)
+        if (strcasecmp(symbol, symbols[i]) == 0) {
+            material->weight[i] = fraction;
+            return true;
+        }
+    return error_set(err, ERROR_NOT_FOUND,
+                     "'%.3s' is no element that is known; there are H, C, N, O, Na, Mg, P, S, Cl, K, Ca", symbol);
+}
+
 /* Parts of names, in the order in which they are looked for: "maxillary sinus" is air though a maxilla is bone. */
 static const struct {
     const char *part, *word;

@@ -32,6 +32,8 @@ struct material {
 /* Fills a material of ICRU reports 44 and 46 (water: H2O) by its word, without boron. ERROR_NOT_FOUND names the words.
  */
 NODISCARD bool material_of_word(const char *word, struct material *material, struct error *err);
+/* Sets an element's weight fraction by its symbol, "Na". ERROR_NOT_FOUND: none of those that are followed. */
+NODISCARD bool material_set_element(struct material *material, const char *symbol, double fraction, struct error *err);
 /* The word of the material that a region's name suggests: "Scalp" gives "skin", "left maxillary sinus" "air". NULL if
  * the name tells nothing, for the caller to choose one and to say so. */
 const char *material_word_of_region(const char *region_name);

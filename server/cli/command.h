@@ -8,4 +8,5 @@ int command_info(int argc, char **argv);
 int command_phantom(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_token(int argc, char **argv);
+int command_transport(int argc, char **argv);
 int command_user(int argc, char **argv);

@@ -18,6 +18,7 @@ static const struct command {
     { "phantom", "write the demo plan, a made-up head", command_phantom },
     { "render", "draw one picture of a plan", command_render },
     { "token", "make, list and revoke tokens of scripts at a running daemon", command_token },
+    { "transport", "compute the dose of a beam in a plan's regions", command_transport },
     { "user", "add, disable and list people who sign in at a running daemon", command_user },
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

@@ -29,7 +29,7 @@ describe('beamroom', () => {
   it('explains itself and each command', () => {
     const help = beamroom('--help');
     assert.equal(help.status, 0);
-    for (const command of ['convert', 'export', 'info', 'phantom', 'render']) {
+    for (const command of ['convert', 'export', 'info', 'phantom', 'render', 'transport']) {
       assert.match(help.stdout, new RegExp(`^  ${command} `, 'm'));
       const own = beamroom(command, '--help');
       assert.equal(own.status, 0);
@@ -58,6 +58,12 @@ describe('beamroom', () => {
       [['phantom', 'a', '--size', '96x96x9999'], /each side must be 16 to 1024/],
       [['phantom', 'a', '--seed', '-1'], /--seed '-1' is not a whole number/],
       [['phantom', 'a', '--seed'], /lacks its value/],
+      [['transport', plan], /one folder and -o OUT are needed/],
+      [['transport', plan, '-o', 'a', '--entry', '1,2,3'], /--entry and --target belong together/],
+      [['transport', plan, '-o', 'a', '--entry', '1,2'], /--entry '1,2' is not of the form X,Y,Z/],
+      [['transport', plan, '-o', 'a', '--histories', '15'], /--histories '15' is not a whole number from 16/],
+      [['transport', plan, '-o', 'a', '--histories', '1e12'], /--histories '1e12'/],
+      [['transport', plan, '-o', 'a', '--mode', 'hybrid'], /--mode is "hybrid", expected full/],
       [['render', plan], /-o OUT/],
       [['render', plan, '-o', 'x.gif'], /does not end in/],
       [['render', plan, '-o', 'x.png', '--size', '5000x10'], /--size '5000x10'/],
@@ -104,6 +110,82 @@ describe('beamroom', () => {
     const again = beamroom('phantom', plan);
     assert.equal(again.status, 1);
     assert.match(again.stderr, /is there already.*--force/);
+  });
+});
+
+describe('beamroom transport', () => {
+  it('adds a dose with errors to the plan, the same for a seed, and says what it assumed', () => {
+    const beam = join(folder, 'beam.json');
+    writeFileSync(
+      beam,
+      JSON.stringify({
+        format: 'beamroom-beam',
+        version: 1,
+        name: 'made',
+        per: 'minute',
+        spectrum: { radius_mm: 50, neutrons: { energy_ev: [1e4, 0.5], share: [1], per_cm2: 1e10 } },
+        materials: { brain: { icru46: 'brain', ppm: 15 }, cranium: { g_cm3: 1.6, weights: { H: 0.05, C: 0.2, O: 0.45, Ca: 0.3 } } },
+      }),
+    );
+    const outs = ['one', 'two'].map((name) => join(folder, `simulated ${name}`));
+    for (const out of outs) {
+      const { status, stdout, stderr } = beamroom('transport', plan, '-o', out, '--beam', beam, '--histories', '4000');
+      assert.equal(status, 0, stderr);
+      assert.match(stdout, /^ {2}brain .* brain, 1\.04 g\/cm3, 15 ppm of boron-10$/m);
+      assert.match(stdout, /^ {2}cranium .* own, 1\.6 g\/cm3, 0 ppm of boron-10$/m);
+      assert.match(stdout, /^approximate, not for treatment$/m);
+    }
+    const [before, after] = [plan, outs[0]].map((dir) => JSON.parse(beamroom('info', dir, '--json').stdout));
+    assert.equal(after.doses.length, before.doses.length + 1);
+    assert.deepEqual(
+      after.regions.map((region) => region.id),
+      before.regions.map((region) => region.id),
+    );
+    const dose = after.doses.at(-1);
+    assert.equal(dose.name, 'Simulated here, approximate');
+    assert.equal(dose.per, 'minute');
+    assert.deepEqual(dose.components.map((component) => component.quantity).sort(), [
+      ...['boron', 'epithermal-fluence', 'fast', 'fast-fluence', 'gamma', 'nitrogen', 'thermal-fluence'],
+    ]);
+    for (const file of ['boron', 'boron-error', 'gamma', 'valid']) {
+      const [one, two] = outs.map((out) => readFileSync(join(out, 'doses', `${dose.id}_${file}.nii.gz`)));
+      assert.ok(one.equals(two), `${file} is the same for a seed`);
+    }
+    const again = beamroom('transport', plan, '-o', outs[0], '--beam', beam);
+    assert.equal(again.status, 1);
+    assert.match(again.stderr, /is there already and is not empty/);
+  });
+
+  it('refuses a beam or a region that is not there by its name', () => {
+    const out = join(folder, 'not simulated');
+    const none = beamroom('transport', plan, '-o', out, '--beam', join(folder, 'none.json'));
+    assert.equal(none.status, 1);
+    assert.match(none.stderr, /none\.json: no such file, and no beam of the library \(goorley, mono-1kev\)/);
+    const beam = join(folder, 'other.json');
+    const made = { format: 'beamroom-beam', version: 1, source: 'x.source' };
+    for (const [change, sentence] of [
+      [{ source: '../x.source' }, /source/],
+      [{ source: 'x.source' }, /x\.source: the beam file names it, and it is not there/],
+      [{ version: 2 }, /version: this program reads version 1/],
+      [{ spectrum: { radius_mm: 5 }, source: undefined }, /spectrum\.neutrons/],
+    ]) {
+      writeFileSync(beam, JSON.stringify({ ...made, ...change }));
+      const refused = beamroom('transport', plan, '-o', out, '--beam', beam);
+      assert.equal(refused.status, 1);
+      assert.match(refused.stderr, sentence);
+    }
+    const spectrum = { radius_mm: 5, neutrons: { energy_ev: [2, 1], share: [1], per_cm2: 1 } };
+    for (const [materials, sentence] of [
+      [{ spleen: { icru46: 'brain' } }, /no region 'spleen'/],
+      [{ brain: { icru46: 'cheese' } }, /'cheese' is no material/],
+      [{ brain: { g_cm3: 1, weights: { Xx: 1 } } }, /'Xx' is no element/],
+    ]) {
+      writeFileSync(beam, JSON.stringify({ ...made, source: undefined, spectrum, materials }));
+      const refused = beamroom('transport', plan, '-o', out, '--beam', beam);
+      assert.equal(refused.status, 1);
+      assert.match(refused.stderr, sentence);
+    }
+    assert.ok(!existsSync(out));
   });
 });
 

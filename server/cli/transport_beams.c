@@ -1,0 +1,103 @@
+/* Beams of `beamroom transport`: a library of published ones, and files. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/formats/plan/beam_file.h"
+#include "core/formats/sera/sera_source.h"
+#include "server/cli/text.h"
+#include "server/cli/transport_parts.h"
+
+/* goorley: J. T. Goorley, W. S. Kiger, R. G. Zamenhof, Med. Phys. 29, 145 (2002): 10 % thermal, 89 % epithermal, 1 %
+ * fast, flat in lethargy, parallel, 5 cm in radius, 1e10 per cm2 and s. mono-1kev: one energy in the same disk, as in
+ * studies of the best energy (published peak of thermal fluence in a head: 3 cm). */
+static const struct {
+    const char *name, *text;
+} library[] = {
+    { "goorley",
+      "{\"format\": \"beamroom-beam\", \"version\": 1, \"name\": \"Goorley 2002\", \"per\": \"minute\", \"spectrum\": "
+      "{\"radius_mm\": 50, \"neutrons\": {\"energy_ev\": [2e6, 1e4, 0.5, 1e-3], \"share\": [0.01, 0.89, 0.10], "
+      "\"per_cm2\": 6e11, \"by_lethargy\": true}}}" },
+    { "mono-1kev",
+      "{\"format\": \"beamroom-beam\", \"version\": 1, \"name\": \"1 keV, parallel\", \"per\": \"minute\", \"spectrum\": "
+      "{\"radius_mm\": 50, \"neutrons\": {\"energy_ev\": [1001, 1000], \"share\": [1], \"per_cm2\": 6e11, "
+      "\"by_lethargy\": true}}}" },
+};
+
+const char *transport_library_beam(const char *name)
+{
+    for (size_t i = 0; i < sizeof library / sizeof *library; i++)
+        if (strcmp(name, library[i].name) == 0)
+            return library[i].text;
+    return NULL;
+}
+
+const char *transport_library_names(void)
+{
+    return "goorley, mono-1kev";
+}
+
+static void print_notes(const struct report *report)
+{
+    for (size_t i = 0; i < report->n_lines; i++) {
+        fputs("beamroom transport: ", stderr);
+        text_print(stderr, report->lines[i].where, 0);
+        fputs(": ", stderr);
+        text_print(stderr, report->lines[i].sentence, 0);
+        fputc('\n', stderr);
+    }
+}
+
+static bool parse(const uint8_t *data, size_t size, const char *name, struct beam_file *file, struct error *err)
+{
+    struct report report = { 0 };
+    bool is_read = beam_file_parse(data, size, name, file, &report, err);
+    print_notes(&report);
+    report_finish(&report);
+    return is_read;
+}
+
+static bool read_in_folder(const struct folder *folder, const char *name, struct beam_file *file, struct error *err)
+{
+    struct bytes bytes = { 0 };
+    if (folder_look(folder, name, NULL) == FOLDER_ABSENT)
+        return error_set(err, ERROR_NOT_FOUND, "%.100s: no such file, and no beam of the library (%s)", name,
+                         transport_library_names());
+    if (!folder_read(folder, name, BEAM_FILE_MAX_BYTES, UINT64_MAX, &bytes, err))
+        return false;
+    bool is_read = parse(bytes.data, bytes.size, name, file, err);
+    bytes_free(&bytes);
+    if (!is_read || !file->source_path[0])
+        return is_read;
+    if (folder_look(folder, file->source_path, NULL) == FOLDER_ABSENT)
+        return error_set(err, ERROR_IO, "%.150s: the beam file names it, and it is not there", file->source_path);
+    if (!folder_read(folder, file->source_path, SERA_SOURCE_MAX_BYTES, UINT64_MAX, &bytes, err))
+        return false;
+    const struct beam_delimiter delimiter = file->source.delimiter;
+    is_read = sera_source_parse(bytes.data, bytes.size, file->source_path, &file->source, err);
+    file->source.delimiter = delimiter;
+    bytes_free(&bytes);
+    return is_read;
+}
+
+bool transport_read_beam(const char *path_or_name, struct beam_file *file, struct error *err)
+{
+    const char *text = transport_library_beam(path_or_name);
+    if (text)
+        return parse((const uint8_t *)text, strlen(text), path_or_name, file, err);
+    char path[PATH_MAX];
+    if (strlen(path_or_name) >= sizeof path)
+        return error_set(err, ERROR_RANGE, "the path of the beam's file is too long");
+    memcpy(path, path_or_name, strlen(path_or_name) + 1);
+    char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path, *parent = slash == path ? "/" : slash ? path : ".";
+    if (slash)
+        *slash = '\0';
+    struct folder folder;
+    if (!folder_open(&folder, parent, err))
+        return false;
+    bool is_read = read_in_folder(&folder, name, file, err);
+    folder_close(&folder);
+    return is_read;
+}

@@ -1,0 +1,31 @@
+#pragma once
+/* What `beamroom transport` makes of a plan and a beam file: materials in voxels, a source, and a dose of the plan. */
+#include "core/formats/plan/beam_file.h"
+#include "core/plan/plan.h"
+#include "core/transport/transport.h"
+
+/* The text of a beam of the library; NULL if there is none of that name. */
+const char *transport_library_beam(const char *name);
+const char *transport_library_names(void); /* for people, with commas */
+
+/* Reads the beam file at a path, with SERA's source that it names, or a beam of the library. */
+NODISCARD bool transport_read_beam(const char *path_or_name, struct beam_file *file, struct error *err);
+
+struct transport_scene {
+    const struct grid *grid; /* of the plan's first layer of regions */
+    uint8_t *voxels;         /* owned */
+    struct material materials[MATERIAL_MAX];
+    size_t n_materials;
+};
+/* Each region's voxels get its material; regions inside others win. Materials are the beam file's by region, else what
+ * the region's name suggests, else soft tissue; a line for each region on standard output.
+ *   errors  ERROR_NOT_FOUND no regions; a region of the file that is not there; an unknown tissue or element;
+ *           ERROR_LIMIT; ERROR_MEMORY */
+NODISCARD bool transport_scene_init(struct transport_scene *scene, const struct plan *plan,
+                                    const struct beam_file *file, struct error *err);
+void transport_scene_finish(struct transport_scene *scene);
+
+/* Adds the result to the plan as its last dose, in the unit of the plan's first if that is cGy, else in Gy; takes the
+ * result's volumes. ERROR_LIMIT: the plan has PLAN_MAX_DOSES */
+NODISCARD bool transport_add_dose(struct plan *plan, struct transport_result *result, const char *per, uint64_t seed,
+                                  struct error *err);

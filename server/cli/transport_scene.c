@@ -1,0 +1,210 @@
+/* From the regions of a plan to materials in voxels, and from a result to a dose of the plan. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/base/mem.h"
+#include "server/cli/text.h"
+#include "server/cli/transport_parts.h"
+
+static const struct beam_file_material *material_in_file(const struct beam_file *file, const struct region *region)
+{
+    for (size_t i = 0; i < file->n_materials; i++)
+        if (strcasecmp(file->materials[i].region, region->name) == 0 ||
+            strcmp(file->materials[i].region, region->id) == 0)
+            return &file->materials[i];
+    return NULL;
+}
+
+static bool check_names(const struct plan *plan, const struct beam_file *file, struct error *err)
+{
+    for (size_t i = 0; i < file->n_materials; i++) {
+        bool is_there = false;
+        for (size_t r = 0; r < plan->regions.n_regions; r++)
+            is_there |= material_in_file(file, &plan->regions.regions[r]) == &file->materials[i];
+        if (!is_there)
+            return error_set(err, ERROR_NOT_FOUND,
+                             "materials: the plan has no region '%.60s', or another entry names it",
+                             file->materials[i].region);
+    }
+    return true;
+}
+
+static bool own_material(const struct beam_file_material *from, struct material *material, struct error *err)
+{
+    *material = (struct material){ .word = "own", .g_cm3 = from->g_cm3 };
+    for (size_t i = 0; i < from->n_elements; i++)
+        if (!material_set_element(material, from->elements[i].symbol, from->elements[i].fraction, err)) {
+            error_prefix(err, "materials: %.60s", from->region);
+            return false;
+        }
+    return true;
+}
+
+/* False with err set, or with is_air and no material. */
+static bool material_of(const struct beam_file *file, const struct region *region, struct material *material,
+                        bool *is_air, bool *is_assumed, struct error *err)
+{
+    const struct beam_file_material *from = material_in_file(file, region);
+    const char *word = from ? from->word : material_word_of_region(region->name);
+    *is_assumed = !word;
+    if (!word)
+        word = "soft-tissue";
+    *is_air = strcmp(word, "air") == 0;
+    if (*is_air)
+        return true;
+    if (from && !word[0] ? !own_material(from, material, err) : !material_of_word(word, material, err))
+        return false;
+    material->boron_ppm = from ? from->boron_ppm : 0;
+    return material_check(material, err);
+}
+
+static void print_region(const struct region *region, const struct material *material, bool is_air, bool is_assumed)
+{
+    fputs("  ", stdout);
+    text_print(stdout, region->name, 20);
+    if (is_air)
+        puts("  air");
+    else
+        printf("  %s%s, %g g/cm3, %g ppm of boron-10\n", material->word,
+               is_assumed ? " (assumed: the name tells nothing)" : "", material->g_cm3, material->boron_ppm);
+}
+
+/* Gives a region's voxels its value: by label where the layer is on the grid, else by the place of each voxel. */
+static void paint(struct transport_scene *scene, const struct region_set *set, const struct region *region,
+                  uint8_t value)
+{
+    const struct volume *layer = set->layers[region->layer];
+    bool is_same = grid_is_same(&layer->grid, scene->grid);
+    uint8_t *at = scene->voxels;
+    for (uint32_t k = 0; k < scene->grid->size[2]; k++)
+        for (uint32_t j = 0; j < scene->grid->size[1]; j++)
+            for (uint32_t i = 0; i < scene->grid->size[0]; i++, at++) {
+                uint32_t ijk[3] = { i, j, k };
+                if (!is_same &&
+                    !volume_voxel_at(layer, affine_point(&scene->grid->lps_mm_from_ijk, vec3(i, j, k)), ijk))
+                    continue;
+                if (volume_label(layer, ijk[0], ijk[1], ijk[2]) == region->label)
+                    *at = value;
+            }
+}
+
+bool transport_scene_init(struct transport_scene *scene, const struct plan *plan, const struct beam_file *file,
+                          struct error *err)
+{
+    const struct region_set *set = &plan->regions;
+    *scene = (struct transport_scene){ 0 };
+    if (set->n_layers == 0 || set->n_regions == 0)
+        return error_set(err, ERROR_NOT_FOUND, "the plan has no regions, so nothing says what the patient is made of");
+    if (!check_names(plan, file, err))
+        return false;
+    scene->grid = &set->layers[0]->grid;
+    if (!(scene->voxels = mem_array(grid_n_voxels(scene->grid), 1, VOLUME_MAX_BYTES, err)))
+        return false;
+    puts("materials:");
+    size_t n_left = set->n_regions;
+    for (int depth = 0; n_left > 0; depth++)
+        for (size_t r = 0; r < set->n_regions; r++) {
+            if (region_depth(set, r) != depth)
+                continue;
+            n_left--;
+            bool is_air = false, is_assumed = false;
+            struct material material = { 0 };
+            if (!material_of(file, &set->regions[r], &material, &is_air, &is_assumed, err))
+                goto fail;
+            if (!is_air && scene->n_materials == MATERIAL_MAX) {
+                error_set(err, ERROR_LIMIT, "more than %d regions with a material", MATERIAL_MAX);
+                goto fail;
+            }
+            if (!is_air)
+                scene->materials[scene->n_materials++] = material;
+            paint(scene, set, &set->regions[r], is_air ? 0 : (uint8_t)scene->n_materials);
+            print_region(&set->regions[r], &material, is_air, is_assumed);
+        }
+    return true;
+fail:
+    transport_scene_finish(scene);
+    return false;
+}
+
+void transport_scene_finish(struct transport_scene *scene)
+{
+    free(scene->voxels);
+    scene->voxels = NULL;
+}
+
+/* ---- the dose ----------------------------------------------------------------------------------------------------- */
+
+static const enum dose_quantity meaning[TRANSPORT_N_QUANTITIES] = {
+    [TRANSPORT_BORON] = DOSE_BORON,
+    [TRANSPORT_NITROGEN] = DOSE_NITROGEN,
+    [TRANSPORT_FAST] = DOSE_FAST,
+    [TRANSPORT_GAMMA] = DOSE_GAMMA,
+    [TRANSPORT_FAST_FLUENCE] = DOSE_FAST_FLUENCE,
+    [TRANSPORT_EPITHERMAL_FLUENCE] = DOSE_EPITHERMAL_FLUENCE,
+    [TRANSPORT_THERMAL_FLUENCE] = DOSE_THERMAL_FLUENCE,
+};
+
+static void scale(struct volume *volume, double factor)
+{
+    float *values = volume->voxels;
+    for (size_t i = 0; i < grid_n_voxels(&volume->grid); i++)
+        values[i] = (float)((double)values[i] * factor);
+    volume_measure(volume);
+}
+
+/* An id that no dose of the plan has. */
+static void make_id(const struct plan *plan, char id[64])
+{
+    snprintf(id, 64, "simulated-here");
+    for (int n = 2; n <= PLAN_MAX_DOSES + 1; n++) {
+        bool is_taken = false;
+        for (size_t i = 0; i < plan->n_doses; i++)
+            is_taken |= strcmp(plan->doses[i].id, id) == 0;
+        if (!is_taken)
+            return;
+        snprintf(id, 64, "simulated-here-%d", n);
+    }
+}
+
+bool transport_add_dose(struct plan *plan, struct transport_result *result, const char *per, uint64_t seed,
+                        struct error *err)
+{
+    if (plan->n_doses == PLAN_MAX_DOSES)
+        return error_set(err, ERROR_LIMIT, "the plan has %d doses already, at most %d", PLAN_MAX_DOSES, PLAN_MAX_DOSES);
+    struct dose *dose = &plan->doses[plan->n_doses];
+    bool is_cgy = plan->n_doses > 0 && strcmp(plan->doses[0].unit, "cGy") == 0;
+    *dose = (struct dose){ 0 };
+    make_id(plan, dose->id);
+    snprintf(dose->name, sizeof dose->name, "Simulated here, approximate");
+    snprintf(dose->unit, sizeof dose->unit, is_cgy ? "cGy" : "Gy");
+    snprintf(dose->per, sizeof dose->per, "%s", per);
+    for (int i = 0; i < TRANSPORT_N_QUANTITIES; i++) {
+        struct dose_component *component = &dose->components[dose->n_components++];
+        *component = (struct dose_component){ .quantity = meaning[i],
+                                              .is_per_ppm = i == TRANSPORT_BORON,
+                                              .values = result->values[i],
+                                              .error = result->errors[i] };
+        if (is_cgy && !dose_quantity_is_fluence(meaning[i])) {
+            scale(component->values, 100);
+            scale(component->error, 100);
+        }
+        result->values[i] = result->errors[i] = NULL;
+    }
+    dose->mask = result->mask;
+    result->mask = NULL;
+    /* It is of the person and the frame that the regions are of. */
+    struct part_origin origin = { .patient = -1, .treatment_plan = -1 };
+    if (plan->n_region_origins > 0)
+        origin = plan->region_origins[0];
+    origin.path[0] = origin.set_label[0] = '\0';
+    plan->dose_origins[plan->n_doses] = origin;
+    plan->n_doses++;
+    size_t used = strlen(plan->note);
+    snprintf(plan->note + used, sizeof plan->note - used,
+             "%sDose '%s': beamroom %s, transport model %s, %llu histories, seed %llu; approximate, not for treatment.",
+             used ? " " : "", dose->id, BEAMROOM_VERSION, TRANSPORT_MODEL, (unsigned long long)result->n_histories,
+             (unsigned long long)seed);
+    return true;
+}
