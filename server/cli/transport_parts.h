@@ -1,5 +1,5 @@
 #pragma once
-/* What `beamroom transport` makes of a plan and a beam file: materials in voxels, a source, and a dose of the plan. */
+/* Parts of `beamroom transport`: beams, materials in voxels, and the dose that a plan gets. */
 #include "core/formats/plan/beam_file.h"
 #include "core/plan/plan.h"
 #include "core/transport/transport.h"

@@ -1,4 +1,4 @@
-/* From the regions of a plan to materials in voxels, and from a result to a dose of the plan. */
+/* Materials in the voxels of a plan; a result as a dose of the plan. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
