@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { axe } from './axe.mjs';
 import { full, isDue, missing, once, startWorld } from './browser.mjs';
+import { cutSegments } from './overlap.mjs';
 import { codesOn } from './plain_words.mjs';
 import { sizes, states } from './room_states.mjs';
 
@@ -24,6 +25,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
         await act(page);
         assert.deepEqual(await axe(page), [], name);
         assert.deepEqual(await codesOn(page), [], name);
+        assert.deepEqual(await cutSegments(page), [], name);
       }
       await page.context().close();
     });

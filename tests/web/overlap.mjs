@@ -71,3 +71,16 @@ export const overlaps = (page) =>
       }
     return [...found];
   });
+
+/** Choices in a row that reach out of what they stand in, or whose words are cut. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+export const cutSegments = (page) =>
+  page.evaluate(() =>
+    [...document.querySelectorAll('.segment')]
+      .filter((segment) => segment.checkVisibility({ visibilityProperty: true }))
+      .filter((segment) => {
+        const [own, outer] = [segment, segment.parentElement].map((element) => element.getBoundingClientRect());
+        const isCut = [...segment.querySelectorAll('button')].some((button) => button.scrollWidth > button.clientWidth + 1);
+        return isCut || own.left < outer.left - 1 || own.right > outer.right + 1;
+      })
+      .map((segment) => segment.getAttribute('aria-label')),
+  );

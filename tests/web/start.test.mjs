@@ -9,6 +9,7 @@ import { call, openPlan } from '../api/daemon.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
 import { full, isDue, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { cutSegments } from './overlap.mjs';
 const sizes = [
   [1280, 720],
   [390, 844],
@@ -225,17 +226,31 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.context().close();
   });
 
-  once('the name is asked for once, and goes along into a room that is joined with one click', async () => {
+  once('name, colours and size are chosen here, asked for once, and go along into a room that is joined with one click', async () => {
     const room = await world.newRoom();
     await enter(room, 'Dr Alvarez');
     const page = await newPage();
     await page.getByLabel('Your name').fill('Maija');
     await page.keyboard.press('Enter');
     await page.locator('.own-name').waitFor({ state: 'detached' });
+    const look = page.getByRole('button', { name: 'Size and colours of the page' });
+    await look.click();
+    await page.getByRole('radio', { name: 'Light' }).click();
+    await page.getByRole('radio', { name: '125 %' }).click();
+    await isClean(page, 'choosing size and colours');
+    assert.deepEqual(await cutSegments(page), []);
+    await page.keyboard.press('Escape');
+    await page.locator('.look-card').waitFor({ state: 'detached' });
+    assert.equal(await look.evaluate((button) => button === document.activeElement), true);
     const row = page.locator(`[data-room="${room}"]`);
     assert.match(await row.textContent(), /Dr Alvarez/);
     await row.getByRole('button').click();
     await full(page);
+    assert.deepEqual(
+      await page.evaluate(() => [document.documentElement.dataset.colours, document.documentElement.style.getPropertyValue('--page')]),
+      ['light', '1.25'],
+    );
+    await page.evaluate(() => localStorage.removeItem('beamroom look'));
     assert.deepEqual((await call(`${world.daemon.url}/api/v1/rooms/${room}`)).json.members.map(({ name }) => name).sort(), [
       'Dr Alvarez',
       'Maija',

@@ -26,7 +26,7 @@ export const toasts = ({ ui }) =>
     <button class="icon-button small" aria-label=${say.dismiss} @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`,
   )}`;
 
-const list = later(() => import('./help.js'), 'js/shell/help.css');
+const list = later(() => import('./help.js'), 'js/shell/help.css', 'js/shell/look.css');
 
 export const help = (world) =>
   world.ui.popover.value !== 'help'

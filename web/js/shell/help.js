@@ -1,12 +1,12 @@
 // The list of keys and of what the mouse does, which can be searched, and in which keys are changed. Loaded when it is first opened.
 import { html, nothing } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
-import { checkbox, segment } from '../parts/fields.js';
+import { checkbox } from '../parts/fields.js';
 import { icon } from '../parts/icons.js';
-import { colours, pageColours, pageSize, sizes } from '../parts/page_look.js';
 import { keyText } from '../room/hotkeys.js';
 import { given, isChanged, refusalOf, resetAll, resetOne, userOf } from './help_keys.js';
 import { say } from './help_words.js';
+import { lookChoice } from './look_choice.js';
 
 /** Rows of the list: [what is pressed, what it does], or [a command of room/commands.js, what it does, 'key']. */
 const rows = [
@@ -85,7 +85,7 @@ export function keyList({ ui }) {
   const { keys } = ui;
   const commands = Object.entries(commandWords).filter(([id, what]) => isWanted(...keys.keysOf(id).map(keyText), what));
   const others = rows.filter((row) => isWanted(...row));
-  return html`${look()}<label class="help-search">${icon('search')}<span class="hidden">${say.search}</span><input type="search" placeholder=${say.search} .value=${wanted.value} @input=${(
+  return html`${lookChoice()}<label class="help-search">${icon('search')}<span class="hidden">${say.search}</span><input type="search" placeholder=${say.search} .value=${wanted.value} @input=${(
     event,
   ) => {
     wanted.value = event.target.value;
@@ -108,25 +108,6 @@ export function keyList({ ui }) {
     <ul class="help-keys">${commands.map(([id, what]) => commandRow(keys, id, what))}</ul>
     ${others.length ? html`<h3>${say.mouseAndFixed}</h3><dl>${others.map(([key, what]) => html`<dt>${key}</dt><dd>${what}</dd>`)}</dl>` : nothing}
     <p class="note"><a href="gen/reference.html" target="_blank">${say.reference}</a></p>`;
-}
-
-const colourWords = { dark: say.dark, light: say.light, system: say.asSystem };
-
-/** How the page looks for this person. */
-function look() {
-  const set = (of) => (value) => {
-    of.value = value;
-  };
-  const choice = (name, of, options) => html`<dt>${name}</dt><dd>${segment(name, options, of.value, false, set(of))}</dd>`;
-  return html`<dl class="help-look">${choice(
-    say.pageSize,
-    pageSize,
-    sizes.map((percent) => [percent, say.percent({ n: percent })]),
-  )}${choice(
-    say.pageColours,
-    pageColours,
-    colours.map((one) => [one, colourWords[one]]),
-  )}</dl>`;
 }
 
 function commandRow(keys, id, what) {

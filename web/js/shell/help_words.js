@@ -2,12 +2,6 @@
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('shell.help', {
-  pageSize: 'Size of the page',
-  percent: '{n} %',
-  pageColours: 'Colours',
-  dark: 'Dark',
-  light: 'Light',
-  asSystem: 'As the system',
   search: 'Search keys and what they do',
   anywhere: 'Keys act on the pane with the light header, from anywhere but text fields, lists of choice and dialogs.',
   singles: 'Single keys',

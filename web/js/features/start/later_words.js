@@ -2,6 +2,7 @@
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('start.later', {
+  look: 'Size and colours of the page',
   find: 'Find a plan',
   places: 'Places',
   today: 'Today',

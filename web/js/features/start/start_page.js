@@ -1,6 +1,6 @@
 // The start page: the plans of this server, their state, and the way into a room.
 import { html, nothing } from '../../../lib/lit-html.js';
-import { effect } from '../../../lib/signals-core.js';
+import { effect, signal } from '../../../lib/signals-core.js';
 import { reportSummary } from '../../room/plan.js';
 import { PlansState } from '../../room/plans.js';
 import { UploadsState } from './uploads.js';
@@ -13,6 +13,7 @@ import { say } from './later_words.js';
 import { askName, nameButton, roomsList } from './lobby.js';
 import { meetingsToday } from './meeting_list.js';
 import { MeetingsState } from './meetings.js';
+import { later } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';
 import { places } from './places.js';
 import { planList } from './plan_list.js';
@@ -64,6 +65,21 @@ export function startPage(host, world) {
   };
 }
 
+const look = later(() => import('../../shell/look_choice.js'), 'js/shell/look.css');
+const isLookOpen = signal(false);
+
+function lookButton() {
+  const isOpen = isLookOpen.value;
+  const onKey = (event) => {
+    if (event.key !== 'Escape' || !isOpen) return;
+    isLookOpen.value = false;
+    event.currentTarget.querySelector('button').focus();
+  };
+  return html`<span class="anchor" @keydown=${onKey}><button class="ghost" aria-expanded=${isOpen} aria-label=${say.look} title=${say.look} @click=${() => {
+    isLookOpen.value = !isOpen;
+  }}>${icon('window')}</button>${isOpen ? html`<div class="popover look-card">${look.draw((loaded) => loaded.lookChoice())}</div>` : nothing}</span>`;
+}
+
 /** "/" anywhere but in a text goes to the search. */
 function listenForSearch(host) {
   const press = (event) => {
@@ -84,7 +100,7 @@ const page = (state, uploads, meetings, world) => {
   return html`<div class="start">
   <header class="banner">${brand()}
     <label class="search" data-keys="/">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(event) => state.show({ search: event.target.value })}><kbd aria-hidden="true">/</kbd></label><span class="grow"></span>
-    ${join(state, enter)}${session.value?.who() ?? nameButton(state, ownName)}</header>
+    ${join(state, enter)}${lookButton()}${session.value?.who() ?? nameButton(state, ownName)}</header>
   ${places(state, meetings)}
   <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${isToday ? meetingsToday(meetings, state) : nothing}${planList(state, uploads, world)}${isToday ? roomsList(state, ownName) : nothing}</main>
   <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div>
