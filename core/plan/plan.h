@@ -6,6 +6,7 @@
 #include "core/dose/curve.h"
 #include "core/dose/dose.h"
 #include "core/plan/origin.h"
+#include "core/plan/statement.h"
 #include "core/region/region.h"
 #include "core/report/report.h"
 #include "core/track/track.h"
@@ -54,6 +55,7 @@ struct plan {
     struct part_origin tracks_origin;
     struct plan_patient patients[ORIGIN_MAX_PATIENTS];
     size_t n_patients;
+    struct plan_statement statement; /* of a person, of whom the plan is; of the kind STATEMENT_NONE: there is none */
     struct treatment_plan treatment_plans[ORIGIN_MAX_TREATMENT_PLANS];
     size_t n_treatment_plans;
     struct plan_registration registrations[ORIGIN_MAX_REGISTRATIONS];

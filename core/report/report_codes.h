@@ -42,6 +42,8 @@
       "Find out whose files they are before the plan is used.") \
     X("patient.none", "The files, or some of them, do not say whose they are.", \
       "Check by other means that the parts are of one person.") \
+    X("patient.stated-differs", "The files name another patient than a person has stated.", \
+      "Find out whose plan it is, and withdraw the statement.") \
     X("plan.structs-absent", "A treatment plan was made for a structure set that is not in the folder.", \
       "Add the structure set.") \
     X("dose.plan-absent", "A dose refers to a treatment plan that is not in the folder.", \

@@ -71,6 +71,10 @@ struct fleet_options {
     /* A plan's state or progress changed, or the list (plan_id NULL). On the net thread, from fleet_handle_events or
      * fleet_tick; for a new process, before waiting requests are sent to it. */
     void (*changed)(void *context, const char *plan_id);
+    /* A person's statement of whom the plan is of: {kind, revision, by, time_ms, words, name, id,
+     * birth_date, withdrawn_ms}, borrowed for the call; NULL, also for the function: nothing. On the net thread, when a
+     * renderer is started. */
+    const cJSON *(*statement)(void *context, const char *plan_id);
     void *context;
 };
 
@@ -142,6 +146,8 @@ void fleet_rescan(struct fleet *fleet); /* lists the folders again, in the backg
 NODISCARD bool fleet_open(struct fleet *fleet, const char *plan_id, struct problem *problem);
 /* Ends the plan's renderer, also while it loads: FLEET_CLOSED. */
 void fleet_close(struct fleet *fleet, const char *plan_id);
+/* Has an open plan read anew, and its rooms told so; does nothing to one that is not open. */
+void fleet_read_anew(struct fleet *fleet, const char *plan_id);
 /* A viewer is there. While a plan is held it is not closed for idleness or for another plan, and its renderer is
  * restarted however often it ends. Opens a closed plan, at once or when one of max_renderers is free; not one that
  * failed for a reason that lies in its files. Counted: each hold has one release. Returns false when there is no such

@@ -78,6 +78,17 @@ void fleet_close(struct fleet *fleet, const char *plan_id)
         renderer_close(fleet, plan, "somebody asked for it");
 }
 
+void fleet_read_anew(struct fleet *fleet, const char *plan_id)
+{
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    struct problem problem;
+    if (!plan || !has_renderer(plan))
+        return;
+    renderer_close(fleet, plan, "it is read anew");
+    if (!fleet_open(fleet, plan->id, &problem) && plan->n_holds > 0)
+        opening_of_held(fleet, plan);
+}
+
 void opening_of_held(struct fleet *fleet, struct plan_entry *plan)
 {
     struct problem problem;

@@ -3,6 +3,8 @@
 
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 #include "core/base/clock.h"
@@ -10,6 +12,43 @@
 #include "server/fleet/cache_quota.h"
 #include "server/fleet/requests.h"
 #include "server/fleet/watch.h"
+
+/* The statement that is kept under either id of the plan. */
+static const cJSON *statement_on(const struct fleet *fleet, const struct plan_entry *plan)
+{
+    const cJSON *found = NULL;
+    if (fleet->options.statement)
+        found = fleet->options.statement(fleet->options.context, plan->id);
+    if (!found && fleet->options.statement && plan_entry_find(fleet, plan->other_id) == plan)
+        found = fleet->options.statement(fleet->options.context, plan->other_id);
+    return found;
+}
+
+static void put(char *out, size_t size, const cJSON *json, const char *name)
+{
+    const char *text = json_text(json, name);
+    packet_put_text(out, size, text ? text : "");
+}
+
+/* Encoded before the process is started: it waits for it. NULL: no memory. */
+static uint8_t *statement_packet(const cJSON *said, size_t *n_bytes)
+{
+    struct packet packet;
+    struct problem problem;
+    const char *kind = json_text(said, "kind");
+    packet_init(&packet, PACKET_STATEMENT);
+    struct packet_statement *statement = &packet.statement;
+    statement->one_person = kind && strcmp(kind, "one-person") == 0;
+    statement->withdrawn = json_number(said, "withdrawn_ms", 0) > 0;
+    statement->time_ms = (int64_t)json_number(said, "time_ms", 0);
+    put(statement->revision, sizeof statement->revision, said, "revision");
+    put(statement->by, sizeof statement->by, said, "by");
+    put(statement->words, sizeof statement->words, said, "words");
+    put(statement->name, sizeof statement->name, said, "name");
+    put(statement->patient_id, sizeof statement->patient_id, said, "id");
+    put(statement->birth_date, sizeof statement->birth_date, said, "birth_date");
+    return packet_encode(&packet, NULL, 0, n_bytes, &problem);
+}
 
 bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
 {
@@ -30,6 +69,13 @@ bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
         words[n++] = "--hide-folder";
     if (fleet->options.stub_renderer)
         words[n++] = "--stub";
+    const cJSON *said = statement_on(fleet, plan);
+    size_t n_statement = 0;
+    uint8_t *statement = said ? statement_packet(said, &n_statement) : NULL;
+    if (said && !statement)
+        return false; /* tried again: without it the plan would be another's */
+    if (statement)
+        words[n++] = "--statement";
     plan->process = fleet_next_number(fleet);
     plan->restart_at_us = 0;
     plan->problem = (struct problem){ 0 };
@@ -41,8 +87,12 @@ bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
     plan->started_us = clock_now_us();
     plan->progressed_us = fleet_now_us(fleet);
     cache_quota_begin(fleet->cache_quota, plan->id, plan->process);
-    if (watch_start_renderer(fleet->watch, plan->process, fleet_arguments(words)))
+    if (watch_start_renderer(fleet->watch, plan->process, fleet_arguments(words))) {
+        if (statement && !watch_send(fleet->watch, plan->process, statement, n_statement))
+            watch_stop(fleet->watch, plan->process, true, "could not be told what was stated of its plan");
         return true;
+    }
+    free(statement);
     cache_quota_end(fleet->cache_quota, plan->process);
     plan->process = 0;
     return false;

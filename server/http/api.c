@@ -45,6 +45,8 @@ static const struct {
     { "DELETE", "/api/v1/plans/{plan}", api_plan_delete },
     { "GET", "/api/v1/plans/{plan}/revision", api_plan_revision },
     { "GET", "/api/v1/plans/{plan}/identity", api_plan_identity },
+    { "POST", "/api/v1/plans/{plan}/statement", api_plan_statement },
+    { "DELETE", "/api/v1/plans/{plan}/statement", api_plan_statement_withdraw },
     { "POST", "/api/v1/plans/{plan}/erase", api_plan_erase },
     { "POST", "/api/v1/plans/{plan}/open", api_plan_open },
     { "POST", "/api/v1/plans/{plan}/close", api_plan_close },

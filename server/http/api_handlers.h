@@ -41,6 +41,8 @@ void api_job_film(struct api *api, struct call *call);
 void api_plan_render(struct api *api, struct call *call);
 void api_plan_surface(struct api *api, struct call *call);
 void api_plan_identity(struct api *api, struct call *call);
+void api_plan_statement(struct api *api, struct call *call);
+void api_plan_statement_withdraw(struct api *api, struct call *call);
 void api_room_identity(struct api *api, struct call *call);
 void api_room_wall_identity(struct api *api, struct call *call);
 

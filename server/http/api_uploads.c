@@ -8,6 +8,7 @@
 #include "server/auth/auth.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
+#include "server/net/statements.h"
 
 /* The body was received into a file by server/http/intake.h. */
 void api_plan_upload(struct api *api, struct call *call)
@@ -69,6 +70,7 @@ void api_plan_delete(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
+    net_statement_forget(api->net, call->ids[0], "");
     if (api->auth)
         auth_set_owner(api->auth, call->ids[0], "");
     call_answer_nothing(call, 204);

@@ -159,3 +159,12 @@ void asleep_finish(struct net *net)
     net->asleep = NULL;
     net->n_asleep = 0;
 }
+
+bool net_rooms_are_known(const struct net *net, struct problem *problem)
+{
+    if (!net->store || net->store_was_open)
+        return true;
+    problem_set(problem, PROBLEM_BUSY, "", "", "the rooms on the server's disk cannot be read yet");
+    problem->retry_after_ms = 1000;
+    return false;
+}

@@ -10,6 +10,7 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/net/schedule.h"
+#include "server/net/statements.h"
 #include "server/wire/missing.h"
 
 /* ---- rooms to the fleet ----------------------------------------------------------------------------------------- */
@@ -322,6 +323,7 @@ void bridge_fleet_changed(void *context, const char *plan_id)
     for (size_t i = 0; i < net->n_rooms; i++)
         if (strcmp(room_plan_id(net->rooms[i]->room), id) == 0)
             bridge_report_plan(net->rooms[i]);
+    statements_plan_changed(net, id);
 }
 
 void bridge_look_at_files(struct net *net, int64_t now_us)

@@ -9,6 +9,7 @@
 #include "core/base/mem.h"
 #include "server/net/keep_audit.h"
 #include "server/net/meeting_list.h"
+#include "server/net/statements.h"
 #include "server/wire/random.h"
 
 enum erase_step { ERASE_NOTED, ERASE_REMOVING, ERASE_FINISHING };
@@ -107,6 +108,7 @@ static void remove_all(struct net *net)
     if (other[0])
         net_rooms_delete_of_plan(net, other, erasing->address, "its plan was erased");
     meetings_erase(net, plan, other);
+    net_statement_forget(net, plan, other);
     erasing->what.n_rooms = (int64_t)(n_before - net->n_rooms - net->n_asleep);
     erasing->step = ERASE_REMOVING;
     if (!fleet_erase_plan(net->fleet, plan, &problem) && problem.type != PROBLEM_NOT_FOUND)

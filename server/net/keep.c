@@ -14,6 +14,7 @@
 #include "server/net/keep_recordings.h"
 #include "server/net/meeting_list.h"
 #include "server/net/schedule.h"
+#include "server/net/statements.h"
 #include "server/wire/json.h"
 
 void keep_changed(void *context, struct room *room, unsigned parts)
@@ -368,8 +369,10 @@ void keep_write_due(struct net *net, bool is_last)
         net->n_undeleted--;
     if (net->store && net->n_audit)
         keep_audit_write(net);
-    if (net->store)
+    if (net->store) {
         meetings_write_due(net, is_last);
+        statements_write_due(net);
+    }
     for (size_t i = 0; net->store && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];
         if (!is_changed(room) || (!is_last && room->keep.ticket))
@@ -406,7 +409,8 @@ void keep_delete(struct net *net, const char *id)
 void keep_written(struct net *net, const struct store_answer *answer)
 {
     keep_audit_written(net, answer);
-    if (answer->ticket && (prompt_written(net, answer) || meetings_written(net, answer)))
+    if (answer->ticket &&
+        (prompt_written(net, answer) || meetings_written(net, answer) || statements_written(net, answer)))
         return;
     for (size_t i = 0; answer->ticket && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];

@@ -28,6 +28,7 @@
 #include "server/net/rooms.h"
 #include "server/net/schedule.h"
 #include "server/net/sign_ins.h"
+#include "server/net/statements.h"
 #include "server/net/strangers.h"
 
 enum {
@@ -119,15 +120,6 @@ static void timer_fired(void *context)
     }
     handle_due(net);
     sign_ins_check(net, now_us);
-}
-
-bool net_rooms_are_known(const struct net *net, struct problem *problem)
-{
-    if (!net->store || net->store_was_open)
-        return true;
-    problem_set(problem, PROBLEM_BUSY, "", "", "the rooms on the server's disk cannot be read yet");
-    problem->retry_after_ms = 1000;
-    return false;
 }
 
 /* ---- connections ------------------------------------------------------------------------------------------------ */
@@ -345,6 +337,7 @@ static void handle_answer(struct net *net, void *argument)
         keep_audit_written(net, answer);
         asleep_add_all(net, answer->rooms, answer->n_rooms);
         meetings_add_all(net, answer);
+        statements_add_all(net, answer);
         if (answer->is_new)
             keep_all_again(net);
         break;
@@ -503,6 +496,7 @@ static void *work(void *context)
     keep_audit_readers_finish(net);
     erase_end(net);
     meetings_end(net);
+    statements_end(net);
     tell_listed(net, UINT64_MAX);
     while (net->n_rooms) {
         room_end_because(net->rooms[0]->room, "the server is being stopped");
@@ -548,6 +542,7 @@ struct net *net_create(const struct net_options *options, struct error *err)
     struct fleet_options fleet = options->fleet;
     fleet.wake = wake;
     fleet.changed = bridge_fleet_changed;
+    fleet.statement = statements_find;
     fleet.context = net;
     if (options->database)
         store_erase_resume(options->database); /* before the plans are listed */
@@ -588,6 +583,7 @@ void net_destroy(struct net *net)
     queue_destroy(net->tasks);
     asleep_finish(net);
     meetings_finish(net);
+    statements_finish(net);
     for (size_t i = 0; i < net->n_audit; i++)
         free(net->audit[i]);
     free(net->audit);

@@ -148,6 +148,7 @@ struct net {
     struct erasing *erasing;                            /* erase.c; NULL: no plan is being erased */
     const struct room_meeting_callbacks *meeting_doors; /* of every room: meeting_doors.h */
     struct meetings *meetings;                          /* meeting_list.c; NULL: there were none yet */
+    struct statements *statements;                      /* statements.c; NULL: there were none yet */
     struct list_waiter *list_waiters;
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
     size_t n_undeleted;

@@ -16,6 +16,7 @@
 #include "core/load/part_names.h"
 #include "core/render/visible/visible.h"
 #include "server/renderer/answers.h"
+#include "server/renderer/digest.h"
 
 enum {
     PROGRESS_EVERY_US = 50000,
@@ -29,6 +30,7 @@ struct loader {
     char *folder, *plan_id, *cache_folder;
     uint64_t max_bytes;
     bool hides_folder;
+    struct packet_statement *statement; /* NULL: none */
     struct inbox *inbox;
     atomic_bool cancel;
     pthread_t load_thread, quick_thread, shapes_thread;
@@ -135,11 +137,12 @@ static void build_ahead(struct loader *loader)
     free(subjects);
 }
 
-/* Stores a plan that took long to open in the cache. A failure only means that the next opening reads the folder. */
+/* Stores a plan that took long to open in the cache, as its files are: not with a person's statement. A failure only
+ * means that the next opening reads the folder. */
 static void store_in_cache(const struct loader *loader, const struct plan *plan, const struct plan_sources *sources)
 {
     struct error err = { 0 };
-    if (!loader->cache_folder || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
+    if (!loader->cache_folder || loader->statement || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
         return;
     if (!plan_cache_store(plan, sources, loader->cache_folder, &err))
         log_warn("the opened plan is not kept: %s", err.text);
@@ -154,6 +157,24 @@ static void hide_folder(struct plan *plan, const char *folder, const char *id)
         (void)snprintf(plan->name, sizeof plan->name, "%s", id);
 }
 
+/* Applies the statement, if the files are those that it was made of. They are read for that a second time, after the
+ * plan: files that change meanwhile are not those. */
+static void apply_statement(const struct loader *loader, struct plan *plan)
+{
+    const struct packet_statement *said = loader->statement;
+    struct plan_statement statement = { .kind = said->one_person ? STATEMENT_ONE_PERSON : STATEMENT_IDENTITY,
+                                        .time_ms = said->time_ms };
+    cJSON *digest = said->withdrawn ? NULL : digest_folder(loader->folder, NULL);
+    const char *revision = json_text(digest, "revision");
+    mem_put_text(statement.by, sizeof statement.by, said->by);
+    mem_put_text(statement.words, sizeof statement.words, said->words);
+    mem_put_text(statement.patient.name, sizeof statement.patient.name, said->name);
+    mem_put_text(statement.patient.id, sizeof statement.patient.id, said->patient_id);
+    mem_put_text(statement.patient.birth_date, sizeof statement.patient.birth_date, said->birth_date);
+    plan_state(plan, &statement, revision && strcmp(revision, said->revision) == 0);
+    cJSON_Delete(digest);
+}
+
 static void *load_main(void *argument)
 {
     struct loader *loader = argument;
@@ -166,6 +187,8 @@ static void *load_main(void *argument)
     struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &event.error);
     if (plan && loader->hides_folder)
         hide_folder(plan, loader->folder, loader->plan_id);
+    if (plan && loader->statement)
+        apply_statement(loader, plan);
     loader->plan = event.plan = plan;
     if (plan)
         loader->derived = event.derived = derive_create(plan);
@@ -234,6 +257,7 @@ static void stop(struct loader *loader, int n_started)
     free(loader->folder);
     free(loader->plan_id);
     free(loader->cache_folder);
+    free(loader->statement);
     free(loader);
 }
 
@@ -245,6 +269,10 @@ struct loader *loader_create(const struct loader_options *options, struct inbox 
     loader->max_bytes = options->max_bytes;
     loader->hides_folder = options->hides_folder;
     loader->cache_folder = options->cache_folder ? mem_copy_text(options->cache_folder) : NULL;
+    if (options->statement) {
+        loader->statement = mem_new(sizeof *loader->statement);
+        *loader->statement = *options->statement;
+    }
     loader->inbox = inbox;
     atomic_init(&loader->cancel, false);
     loader->slow = queue_create(MAX_QUESTIONS, drop_question);

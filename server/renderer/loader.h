@@ -9,9 +9,10 @@ struct loader;
  * NULL: no thread. */
 struct loader_options {
     const char *folder, *plan_id;
-    uint64_t max_bytes;       /* as plan_load */
-    const char *cache_folder; /* as plan_load */
-    bool hides_folder;        /* a plan that is called by its folder is called by its id instead */
+    uint64_t max_bytes;                       /* as plan_load */
+    const char *cache_folder;                 /* as plan_load */
+    bool hides_folder;                        /* a plan that is called by its folder is called by its id instead */
+    const struct packet_statement *statement; /* NULL: nobody has stated whom the plan is of */
 };
 NODISCARD struct loader *loader_create(const struct loader_options *options, struct inbox *inbox, struct error *err);
 /* After LOADED. Answered by an event ANSWER with the same id. Takes question. False: too many wait. */

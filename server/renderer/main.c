@@ -45,6 +45,7 @@ static void print_help(void)
         "  --socket-fd FD     number of the open socket to the daemon\n"
         "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
         "  --hide-folder      a plan without a name of its own is called by its id, not by its folder\n"
+        "  --statement        the daemon sends a packet \"statement\", after which the plan is read\n"
         "  --plan-id ID       what the daemon calls the plan: letters a-z, digits, '-'\n"
         "  --cache DIR        folder that may be written\n"
         "  --max-file-bytes N  largest file it may write; 0 (default): no limit\n"
@@ -99,7 +100,8 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
         INTO,
         MAX_UNPACKED,
         MAX_FILE,
-        HIDE
+        HIDE,
+        STATEMENT
     };
     static const struct option options[] = {
         { "help", no_argument, NULL, HELP },
@@ -120,6 +122,7 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
         { "max-unpacked-bytes", required_argument, NULL, MAX_UNPACKED },
         { "max-file-bytes", required_argument, NULL, MAX_FILE },
         { "hide-folder", no_argument, NULL, HIDE },
+        { "statement", no_argument, NULL, STATEMENT },
         { NULL, 0, NULL, 0 },
     };
     *arguments = (struct arguments){ .session = { .socket = -1 } };
@@ -153,6 +156,7 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
             break;
         case SCAN: arguments->scan = optarg; break;
         case HIDE: arguments->session.hides_folder = true; break;
+        case STATEMENT: arguments->session.awaits_statement = true; break;
         case DIGEST: arguments->digest = optarg; break;
         case KNOWN: arguments->known = optarg; break;
         case PROBE: arguments->is_probe = true; break;

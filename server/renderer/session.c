@@ -14,7 +14,7 @@
 #include "server/renderer/pictures.h"
 #include "server/wire/plan_document.h"
 
-enum { LAST_PACKETS_MS = 1000 };
+enum { LAST_PACKETS_MS = 1000, STATEMENT_MS = 10000 };
 
 struct session {
     const struct session_options *options;
@@ -262,9 +262,33 @@ static void loop(struct session *session)
     }
 }
 
+/* Waits for the packet that the daemon sends with the start of the process. */
+static bool read_statement(struct session *session, struct packet_statement *statement, struct error *err)
+{
+    struct pollfd polled = { .fd = link_file(session->link), .events = POLLIN };
+    const int64_t until_us = clock_now_us() + STATEMENT_MS * INT64_C(1000);
+    struct packet packet;
+    int got = 0;
+    while (got == 0 && clock_now_us() < until_us && (poll(&polled, 1, STATEMENT_MS) >= 0 || errno == EINTR)) {
+        if (polled.revents && !link_read(session->link))
+            break;
+        got = link_take(session->link, &packet);
+    }
+    if (got <= 0)
+        return error_set(err, ERROR_IO, "no packet \"statement\" came");
+    const bool is_one = packet.type == PACKET_STATEMENT;
+    if (is_one)
+        *statement = packet.statement;
+    packet_finish(&packet);
+    return is_one || error_set(err, ERROR_IO, "another packet came before \"statement\"");
+}
+
 static bool start(struct session *session, struct error *err)
 {
     const struct session_options *options = session->options;
+    struct packet_statement statement;
+    if (options->awaits_statement && !read_statement(session, &statement, err))
+        return false;
     session->inbox = inbox_create();
     if (!session->inbox)
         return error_set(err, ERROR_IO, "no file to wait on: %s", strerror(errno));
@@ -272,8 +296,9 @@ static bool start(struct session *session, struct error *err)
     session->pipeline = pipeline_create(options->back_end, options->is_stub, &callbacks, err);
     if (!session->pipeline)
         return false;
-    struct loader_options load = { options->plan_folder, options->plan_id, options->max_bytes, options->cache,
-                                   options->hides_folder };
+    struct loader_options load = { options->plan_folder,  options->plan_id,
+                                   options->max_bytes,    options->cache,
+                                   options->hides_folder, options->awaits_statement ? &statement : NULL };
     session->loader = loader_create(&load, session->inbox, err);
     if (!session->loader)
         return false;

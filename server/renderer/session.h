@@ -9,7 +9,8 @@
 struct session_options {
     int socket;
     const char *plan_folder, *plan_id;
-    bool hides_folder; /* as in loader_options */
+    bool hides_folder;     /* as in loader_options */
+    bool awaits_statement; /* the first packet is a statement, and the plan is read after it */
     enum render_back_end back_end;
     bool is_stub;
     const char *confined; /* what confine() reported */

@@ -315,6 +315,14 @@ static bool strike_cases(const struct erasing *erasing)
     return ok;
 }
 
+static bool delete_statement(const struct erasing *erasing)
+{
+    sqlite3_stmt *row = prepare_of_plan(erasing, "DELETE FROM statements WHERE plan IN (?1, ?2)");
+    const bool ok = row && sql_step(row, "erasing a statement on a plan", erasing->err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
 static bool erase_rows(const struct erasing *erasing)
 {
     if (!sql_run(erasing->db, "PRAGMA secure_delete = ON", erasing->err) ||
@@ -323,7 +331,7 @@ static bool erase_rows(const struct erasing *erasing)
     if (was_done(erasing))
         return sql_run(erasing->db, "COMMIT", erasing->err);
     const bool ok = delete_rooms(erasing) && strike_records(erasing) && delete_owner(erasing) &&
-                    strike_cases(erasing) && append_row(erasing) &&
+                    delete_statement(erasing) && strike_cases(erasing) && append_row(erasing) &&
                     erasing->err->code == ERROR_NONE && /* else rows that cannot be read would stay unseen */
                     sql_run(erasing->db, "COMMIT", erasing->err);
     if (!ok && !sqlite3_get_autocommit(erasing->db))

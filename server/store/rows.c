@@ -25,6 +25,7 @@ void store_room_free(struct store_room *room)
         free(room->audit[i]);
     free(room->audit);
     store_meeting_free(room->meeting);
+    store_statement_free(room->statement);
     free(room->items);
     free(room->members);
     free(room->links);

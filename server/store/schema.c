@@ -95,6 +95,8 @@ static const char *const steps[] = {
     " id TEXT NOT NULL, plan TEXT NOT NULL, room TEXT NOT NULL, body TEXT NOT NULL, PRIMARY KEY(meeting, place)) STRICT;",
     /* 11: who waits outside of a case of a meeting that is not open to them */
     "ALTER TABLE members ADD COLUMN waits_outside INTEGER NOT NULL DEFAULT 0;",
+    /* 12: what people have stated of whom plans are of */
+    "CREATE TABLE statements(plan TEXT PRIMARY KEY, body TEXT NOT NULL) STRICT;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

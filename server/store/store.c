@@ -23,6 +23,7 @@
 #include "server/store/records.h"
 #include "server/store/rows.h"
 #include "server/store/sql.h"
+#include "server/store/statements.h"
 
 enum { MAX_BATCH = 256, MAX_PENDING = STORE_QUEUE };
 
@@ -64,9 +65,8 @@ struct store {
     bool is_failing, was_open;
     struct error failure; /* as last told */
     int64_t retry_us, pause_ms;
-    struct audit_head head; /* of the audit on disk */
-    int64_t logged_n;       /* its number when it was last logged */
-    int64_t log_us;         /* when it is logged next, if it is another then */
+    struct audit_head head;   /* of the audit on disk */
+    int64_t logged_n, log_us; /* its number when it was last logged; when it is logged next, if it is another then */
 };
 
 void store_answer_free(struct store_answer *answer)
@@ -82,6 +82,7 @@ void store_answer_free(struct store_answer *answer)
     free(answer->records);
     audit_rows_free(answer->audit, answer->n_audit_rows);
     meetings_free(answer->meetings, answer->n_meetings);
+    statements_free(answer->statements, answer->n_statements);
     free(answer);
 }
 
@@ -200,7 +201,8 @@ static bool open_database(struct store *store, struct error *err)
     opened.rooms = rows_list_rooms(store->db, STORE_MAX_ROOMS, &opened.n_rooms, err);
     opened.accounts = opened.rooms ? accounts_read(store->db, err) : NULL;
     opened.meetings = opened.accounts ? meetings_read(store->db, &opened.n_meetings, err) : NULL;
-    if (!opened.meetings) {
+    if (!opened.meetings || !(opened.statements = statements_read(store->db, &opened.n_statements, err))) {
+        meetings_free(opened.meetings, opened.n_meetings);
         store_summaries_free(opened.rooms, opened.n_rooms);
         store_accounts_free(opened.accounts);
         database_close(store->db);
@@ -226,6 +228,7 @@ static bool apply(struct store *store, const struct request *request, struct err
     return (request->room->id[0] == 0 || (request->room->is_prompt ? rows_write_prompt(store->db, request->room, err)
                                                                    : rows_write_room(store->db, request->room, err))) &&
            (!request->room->meeting || meetings_write(store->db, request->room->meeting, err)) &&
+           (!request->room->statement || statements_write(store->db, request->room->statement, err)) &&
            audit_append(store->db, request->room->audit, request->room->n_audit, err);
 }
 

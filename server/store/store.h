@@ -38,12 +38,13 @@ struct store_answer {
     enum store_event event;
     uint64_t ticket;
     struct error error;
-    struct store_room *room;         /* the receiver's */
-    struct store_part *part;         /* the receiver's */
-    struct store_summary *rooms;     /* the receiver's */
-    struct store_accounts *accounts; /* the receiver's */
-    struct store_meeting **meetings; /* of STORE_OPENED; the receiver's */
-    size_t n_rooms, n_meetings;
+    struct store_room *room;            /* the receiver's */
+    struct store_part *part;            /* the receiver's */
+    struct store_summary *rooms;        /* the receiver's */
+    struct store_accounts *accounts;    /* the receiver's */
+    struct store_meeting **meetings;    /* of STORE_OPENED; the receiver's */
+    struct store_statement *statements; /* likewise */
+    size_t n_rooms, n_meetings, n_statements;
     struct store_record *records; /* the receiver's */
     size_t n_records;
     struct store_audit_row *audit; /* the receiver's */

@@ -18,7 +18,8 @@ enum {
     STORE_PERSON = 164,              /* of a name as people read it */
     STORE_GROUPS = 2113,             /* of a list of groups */
     STORE_MAX_ACCOUNTS = 10000,      /* users, tokens, sessions or owners that are read */
-    STORE_MAX_MEETINGS = 1000        /* that are read; a caller keeps no more */
+    STORE_MAX_MEETINGS = 1000,       /* that are read; a caller keeps no more */
+    STORE_MAX_STATEMENTS = 4000      /* likewise */
 };
 
 struct store_member {
@@ -129,6 +130,14 @@ struct store_meeting {
 };
 void store_meeting_free(struct store_meeting *meeting);
 
+/* A statement of a person of whom a plan is of. body: JSON, which names the patient; NULL in a write: it is deleted.
+ */
+struct store_statement {
+    char plan[64];
+    char *body;
+};
+void store_statement_free(struct store_statement *statement);
+
 /* A room as it is on disk, or a write: in a write, what is NULL or absent stays as it is. */
 struct store_room {
     char id[64], plan[64], presenter[64]; /* presenter "": nobody */
@@ -152,7 +161,8 @@ struct store_room {
     size_t n_recordings;
     struct store_record *records; /* in a write: to be added; not read */
     size_t n_records;
-    struct store_meeting *meeting; /* in a write without id: it is written, with the audit; not read */
+    struct store_meeting *meeting;     /* in a write without id: it is written, with the audit; not read */
+    struct store_statement *statement; /* likewise */
     bool is_prompt; /* in a write: items, records and audit alone, now or never: where this cannot be, it is answered
                        with the error and dropped */
     char **audit;   /* in a write: rows for the audit (audit.h), committed with the rest or not at all; not read */

@@ -39,6 +39,8 @@
  *   preferences: {levels: [ {percent, color} ], colors: ["#rrggbb"]},  of the program that the plan comes from
  *   report: {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped},
  *   patients: [ {masked, has_identity: true, has_conflict} ],  "A. V. ...417"; empty: no patient identity in the files
+ *   statement: {kind: "one-person" | "identity", state: "used" | "outdated" | "contradicted", by, time_ms, words}
+ *     | null,  what a person has stated of whom the plan is of: core/plan/statement.h
  *   treatment_plans: [ {
  *     label, name, date, time, approval, review_date, reviewer, fractions | null, prescription_gy | null, patient,
  *     structs, is_structs_absent

@@ -196,6 +196,20 @@ static cJSON *patients_array(const struct plan *plan)
     return array;
 }
 
+/* Without the patient: who that is stands masked in patients. */
+static cJSON *statement_object(const struct plan_statement *statement)
+{
+    if (statement->kind == STATEMENT_NONE)
+        return cJSON_CreateNull();
+    cJSON *object = cJSON_CreateObject();
+    json_add(object, "kind", cJSON_CreateString(statement_kind_word(statement->kind)));
+    json_add(object, "state", cJSON_CreateString(statement_state_word(statement->state)));
+    json_add(object, "by", cJSON_CreateString(statement->by));
+    json_add(object, "time_ms", cJSON_CreateNumber((double)statement->time_ms));
+    json_add(object, "words", cJSON_CreateString(statement->words));
+    return object;
+}
+
 /* YYYYMMDD as YYYY-MM-DD; anything else as it is. */
 static cJSON *date(const char *text)
 {
@@ -234,6 +248,7 @@ void plan_origins_add(cJSON *document, const struct plan *plan)
     for (size_t i = 0; i < plan->n_treatment_plans; i++)
         json_append(treatments, treatment_plan_object(plan, &plan->treatment_plans[i], &numbers));
     json_add(document, "patients", patients_array(plan));
+    json_add(document, "statement", statement_object(&plan->statement));
     json_add(document, "treatment_plans", treatments);
     json_add(document, "shown_patient", index_or_null(plan_shown_patient(plan), plan->n_patients));
     json_add(document, "shown_plan", index_or_null(plan_shown_treatment_plan(plan), plan->n_treatment_plans));

@@ -61,17 +61,21 @@ static size_t n_letters(const char *text)
     return n;
 }
 
-static bool check_words(const cJSON *body, const char *where, struct problem *problem)
+bool acceptance_words_check(const cJSON *words, const char *pointer, struct problem *problem)
 {
-    const cJSON *words = cJSON_GetObjectItemCaseSensitive(body, "words");
-    char pointer[96];
-    (void)snprintf(pointer, sizeof pointer, "%.64s/words", where);
     if (!body_check_text(words, pointer, ACCEPTANCE_MAX_WORDS, problem))
         return false;
     return n_letters(words->valuestring) >= ACCEPTANCE_MIN_LETTERS ||
            problem_set(problem, PROBLEM_VALIDATION, pointer, "length",
                        "%s has %zu letters, expected your own words of at least %d", pointer,
                        n_letters(words->valuestring), ACCEPTANCE_MIN_LETTERS);
+}
+
+static bool check_words(const cJSON *body, const char *where, struct problem *problem)
+{
+    char pointer[96];
+    (void)snprintf(pointer, sizeof pointer, "%.64s/words", where);
+    return acceptance_words_check(cJSON_GetObjectItemCaseSensitive(body, "words"), pointer, problem);
 }
 
 static bool check_reason(const cJSON *body, const char *where, struct problem *problem)

@@ -14,6 +14,8 @@ enum {
 
 /* The pair's entry of fits, whichever of the two is named first; NULL: there is none. */
 const cJSON *acceptance_fit(const cJSON *plan, const char *thing, const char *with);
+/* A person's own words for a judgement: ACCEPTANCE_MIN_LETTERS letters and ACCEPTANCE_MAX_WORDS characters. */
+NODISCARD bool acceptance_words_check(const cJSON *words, const char *pointer, struct problem *problem);
 /* Checks the four fields. plan NULL: a kept acceptance, whose parts the plan may not have any more. False with problem:
  * validation; or forbidden with the code never, for a pair that nobody can accept. where: pointer of the object. */
 NODISCARD bool acceptance_check(const cJSON *plan, const cJSON *body, const char *where, struct problem *problem);

@@ -1,0 +1,322 @@
+/* The list of statements: statements.h. */
+#include "server/net/statements.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/net/can_write.h"
+#include "server/net/keep_audit.h"
+#include "server/net/schedule.h"
+
+enum { STATEMENTS_PAUSE_MS = 500 };
+
+struct kept_statement {
+    char plan[64];
+    cJSON *now;      /* as it counts; NULL: it is deleted, or its first write is under way */
+    cJSON *pending;  /* as it is being written */
+    uint64_t ticket; /* of that write; 0: none */
+    net_statement_done *done;
+    void *context;
+    bool is_changed; /* now is not on disk */
+};
+
+struct statements {
+    struct kept_statement *list; /* place for NET_MAX_STATEMENTS */
+    size_t n;
+};
+
+static struct kept_statement *find(const struct net *net, const char *plan_id)
+{
+    for (size_t i = 0; net->statements && i < net->statements->n; i++)
+        if (strcmp(net->statements->list[i].plan, plan_id) == 0)
+            return &net->statements->list[i];
+    return NULL;
+}
+
+static struct kept_statement *append(struct net *net, const char *plan_id)
+{
+    if (!net->statements) {
+        net->statements = mem_new(sizeof *net->statements);
+        net->statements->list = mem_array(NET_MAX_STATEMENTS, sizeof net->statements->list[0], 1 << 20, NULL);
+    }
+    struct statements *all = net->statements;
+    if (!all->list || all->n >= NET_MAX_STATEMENTS)
+        return NULL;
+    struct kept_statement *kept = &all->list[all->n++];
+    *kept = (struct kept_statement){ 0 };
+    mem_put_text(kept->plan, sizeof kept->plan, plan_id);
+    return kept;
+}
+
+/* Drops what says nothing and waits for nothing. */
+static void drop_if_empty(struct net *net, struct kept_statement *kept)
+{
+    struct statements *all = net->statements;
+    if (kept->now || kept->ticket || kept->is_changed)
+        return;
+    const size_t i = (size_t)(kept - all->list);
+    cJSON_Delete(kept->pending);
+    all->n--;
+    memmove(kept, kept + 1, (all->n - i) * sizeof *kept);
+}
+
+const cJSON *net_statement_on(const struct net *net, const char *plan_id)
+{
+    const struct kept_statement *kept = find(net, plan_id);
+    return kept ? kept->now : NULL;
+}
+
+const cJSON *statements_find(void *context, const char *plan_id)
+{
+    return net_statement_on(context, plan_id);
+}
+
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
+
+/* Without the patient and the words: a row of the audit is never erased. */
+static cJSON *audit_detail(const cJSON *statement, const char *what)
+{
+    cJSON *detail = cJSON_CreateObject();
+    const char *kind = json_text(statement, "kind"), *revision = json_text(statement, "revision");
+    cJSON_AddStringToObject(detail, "what", what);
+    cJSON_AddStringToObject(detail, "kind", kind ? kind : "");
+    cJSON_AddStringToObject(detail, "revision", revision ? revision : "");
+    return detail;
+}
+
+/* by: who says it, as people read it. */
+static char *audit_text(const char *plan_id, cJSON *detail, const struct identity *who, const char *by,
+                        const char *address)
+{
+    char *words = json_print(detail);
+    const struct room_audit row = { .time_ms = clock_wall_ms(),
+                                    .action = "statement",
+                                    .member = "",
+                                    .name = by,
+                                    .role = "",
+                                    .address = address,
+                                    .user = who->user,
+                                    .source = identity_source_word(who->source),
+                                    .session = who->session,
+                                    .detail = words ? words : "{}",
+                                    .result = "done",
+                                    .before = -1,
+                                    .after = -1 };
+    cJSON *json = keep_audit_describe("", plan_id, &row);
+    char *text = json_print(json);
+    cJSON_Delete(json);
+    cJSON_Delete(detail);
+    free(words);
+    return text;
+}
+
+/* statement NULL: it is deleted. audit: NULL, or taken. NULL: no memory. */
+static struct store_room *make_write(const char *plan_id, const cJSON *statement, char *audit)
+{
+    struct store_room *write = mem_new(sizeof *write);
+    write->statement = mem_new(sizeof *write->statement);
+    mem_put_text(write->statement->plan, sizeof write->statement->plan, plan_id);
+    write->statement->body = statement ? json_print(statement) : NULL;
+    write->audit = audit ? mem_array(1, sizeof write->audit[0], 1 << 20, NULL) : NULL;
+    if (write->audit)
+        write->audit[write->n_audit++] = audit;
+    else
+        free(audit);
+    write->is_prompt = audit != NULL;
+    if ((!statement || write->statement->body) && (!audit || write->audit))
+        return write;
+    store_room_free(write);
+    return NULL;
+}
+
+/* The change counts: the plan is read with it. */
+static void take_over(struct net *net, struct kept_statement *kept)
+{
+    char plan[sizeof kept->plan];
+    net_statement_done *done = kept->done;
+    void *context = kept->context;
+    mem_put_text(plan, sizeof plan, kept->plan);
+    kept->ticket = 0;
+    kept->is_changed = false; /* what was on disk was replaced */
+    cJSON_Delete(kept->now);
+    kept->now = kept->pending;
+    kept->pending = NULL;
+    drop_if_empty(net, kept);
+    fleet_read_anew(net->fleet, plan);
+    if (done)
+        done(context, NULL);
+}
+
+bool net_statement_put(struct net *net, const char *plan_id, cJSON *statement, const struct identity *who,
+                       const char *by, const char *address, net_statement_done *done, void *context,
+                       struct problem *problem)
+{
+    struct kept_statement *kept = find(net, plan_id);
+    if (kept && kept->ticket) {
+        problem_set(problem, PROBLEM_BUSY, "", "", "another statement on this plan is being written");
+        problem->retry_after_ms = 300;
+        cJSON_Delete(statement);
+        return false;
+    }
+    if (!net_can_write(net, problem)) {
+        cJSON_Delete(statement);
+        return false;
+    }
+    if (!kept && !(kept = append(net, plan_id))) {
+        cJSON_Delete(statement);
+        return problem_set(problem, PROBLEM_LIMIT, "", "",
+                           "statements on %d plans are kept, more are not allowed: withdraw some", NET_MAX_STATEMENTS);
+    }
+    cJSON *detail = audit_detail(statement ? statement : kept->now, statement ? "made" : "withdrawn");
+    char *audit = audit_text(plan_id, detail, who, by, address);
+    struct store_room *write = audit && net->store ? make_write(plan_id, statement, audit) : NULL;
+    const uint64_t ticket = net->n_tickets + 1;
+    if (net->store && (!write || !store_write(net->store, write, ticket))) {
+        store_room_free(write);
+        cJSON_Delete(statement);
+        drop_if_empty(net, kept);
+        return keep_refuse(false, problem);
+    }
+    kept->pending = statement;
+    kept->done = done;
+    kept->context = context;
+    if (net->store) {
+        net->n_tickets = kept->ticket = ticket;
+        net->n_audit_waiting++;
+    } else {
+        free(audit);
+        take_over(net, kept);
+    }
+    return true;
+}
+
+bool statements_written(struct net *net, const struct store_answer *answer)
+{
+    struct problem problem;
+    for (size_t i = 0; net->statements && i < net->statements->n; i++) {
+        struct kept_statement *kept = &net->statements->list[i];
+        if (!kept->ticket || kept->ticket != answer->ticket)
+            continue;
+        if (answer->error.code == ERROR_NONE) {
+            take_over(net, kept);
+            return true;
+        }
+        net_statement_done *done = kept->done;
+        void *context = kept->context;
+        kept->ticket = 0;
+        cJSON_Delete(kept->pending);
+        kept->pending = NULL;
+        drop_if_empty(net, kept);
+        (void)keep_refuse(answer->error.code == ERROR_LIMIT, &problem);
+        if (done)
+            done(context, &problem);
+        return true;
+    }
+    return false;
+}
+
+void statements_write_due(struct net *net)
+{
+    for (size_t i = net->statements ? net->statements->n : 0; i-- > 0;) {
+        struct kept_statement *kept = &net->statements->list[i];
+        if (!kept->is_changed || kept->ticket)
+            continue;
+        struct store_room *write = make_write(kept->plan, kept->now, NULL);
+        kept->is_changed = !write || !store_write(net->store, write, 0);
+        if (kept->is_changed) { /* tried again */
+            store_room_free(write);
+            schedule_at(net, clock_now_us() + STATEMENTS_PAUSE_MS * INT64_C(1000));
+        }
+        drop_if_empty(net, kept);
+    }
+}
+
+/* ---- what the plan's files say ---------------------------------------------------------------------------------- */
+
+void statements_plan_changed(struct net *net, const char *plan_id)
+{
+    struct fleet_plan plan;
+    struct kept_statement *kept = find(net, plan_id);
+    if (!kept || !kept->now || json_number(kept->now, "withdrawn_ms", 0) > 0 ||
+        !fleet_plan_find(net->fleet, plan_id, &plan) || plan.state != FLEET_READY)
+        return;
+    const cJSON *read = cJSON_GetObjectItemCaseSensitive(plan.document, "statement");
+    const char *state = json_text(read, "state");
+    /* that of another statement is of the renderer that is being replaced */
+    if (!state || strcmp(state, "used") == 0 ||
+        json_number(read, "time_ms", 0) != json_number(kept->now, "time_ms", -1))
+        return;
+    cJSON_DeleteItemFromObjectCaseSensitive(kept->now, "withdrawn_ms");
+    cJSON_AddNumberToObject(kept->now, "withdrawn_ms", (double)clock_wall_ms());
+    kept->is_changed = net->store != NULL;
+    net_audit(net, "", "", plan_id, "statement", audit_detail(kept->now, state));
+    schedule_at(net, 0);
+}
+
+/* ---- the disk, the end ------------------------------------------------------------------------------------------ */
+
+void statements_add_all(struct net *net, const struct store_answer *opened)
+{
+    for (size_t i = 0; i < opened->n_statements; i++) {
+        const struct store_statement *row = &opened->statements[i];
+        cJSON *body = find(net, row->plan) ? NULL : json_read(row->body, strlen(row->body), NULL);
+        struct kept_statement *kept = body ? append(net, row->plan) : NULL;
+        if (kept) {
+            kept->now = body;
+            fleet_read_anew(net->fleet, row->plan); /* one that was opened while the disk could not be read */
+        } else {
+            cJSON_Delete(body);
+            log_error("a statement on a plan is not readable in the database");
+        }
+    }
+    for (size_t i = 0; opened->is_new && net->statements && i < net->statements->n; i++)
+        net->statements->list[i].is_changed = true; /* what was on disk was lost */
+}
+
+static void forget(struct net *net, const char *plan_id)
+{
+    struct kept_statement *kept = find(net, plan_id);
+    if (!kept)
+        return;
+    cJSON_Delete(kept->now);
+    kept->now = NULL;
+    kept->is_changed = net->store != NULL;
+    drop_if_empty(net, kept);
+    schedule_at(net, 0);
+}
+
+void net_statement_forget(struct net *net, const char *plan_id, const char *other)
+{
+    forget(net, plan_id);
+    if (other[0])
+        forget(net, other);
+}
+
+void statements_end(struct net *net)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_BUSY, "", "", "the server is stopping");
+    for (size_t i = 0; net->statements && i < net->statements->n; i++) {
+        struct kept_statement *kept = &net->statements->list[i];
+        if (kept->ticket && kept->done)
+            kept->done(kept->context, &problem);
+        kept->done = NULL;
+        kept->ticket = 0;
+    }
+}
+
+void statements_finish(struct net *net)
+{
+    struct statements *all = net->statements;
+    for (size_t i = 0; all && i < all->n; i++) {
+        cJSON_Delete(all->list[i].now);
+        cJSON_Delete(all->list[i].pending);
+    }
+    if (all)
+        free(all->list);
+    free(all);
+    net->statements = NULL;
+}

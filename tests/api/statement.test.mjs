@@ -1,0 +1,212 @@
+// A statement of whom a plan is of kept, for every room, over a restart, until it is withdrawn or the files change. Made-up DICOM; nobody's data.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { call, openPlan, startDaemon, until } from './daemon.mjs';
+import { FullDisk } from './full_disk.mjs';
+import { putDose, putWhole } from './made_dicom.mjs';
+import { Client } from './ws_client.mjs';
+
+const quirin = { id: '77-30419', name: 'Zweifel^Quirin', birthDate: '19610412' };
+const asWritten = { ...quirin, birthDate: '19610421' }; // the same ID, another birth date: files of two patients
+const nobody = { id: '', name: '', birthDate: '' };
+const ottilie = { name: 'Morgen^Ottilie', id: '88-50327', birth_date: '1955-07-23' };
+const secrets = ['Morgen', 'Ottilie', '88-50327', '50327', '19550723', '1955-07-23'];
+
+let plans, data, daemon, api;
+const clients = [];
+const start = async () => {
+  daemon = await startDaemon({ plans: [plans], data });
+  api = `${daemon.url}/api/v1`;
+};
+before(async () => {
+  plans = mkdtempSync(join(tmpdir(), 'beamroom-statement-'));
+  data = mkdtempSync(join(tmpdir(), 'beamroom-statement-data-'));
+  putWhole(join(plans, 'case-1'), quirin);
+  putDose(join(plans, 'case-1'), asWritten, { uid: '1.2.89', file: 'other.dcm', plan: '1.2.71' });
+  putWhole(join(plans, 'nameless'), nobody);
+  await start();
+  for (const plan of ['case-1', 'nameless']) assert.equal((await openPlan(daemon.url, plan)).state, 'done', daemon.log());
+});
+after(async () => {
+  for (const client of clients) client.cut();
+  await daemon?.stop();
+  for (const folder of [plans, data]) rmSync(folder, { recursive: true, force: true });
+});
+
+const document = async (plan) => (await call(`${api}/plans/${plan}`)).json;
+const loaded = (plan, suits) =>
+  until(
+    () => document(plan),
+    (now) => now.state === 'ready' && suits(now),
+  ); // prettier-ignore
+/** Until the revision of the files is known. */
+const state = (plan, body, query = '', headers = {}) =>
+  until(
+    () => call(`${api}/plans/${plan}/statement${query}`, 'POST', body, headers),
+    ({ status }) => status !== 503,
+  );
+const audit = async (what) =>
+  until(
+    async () =>
+      (await call(`${api}/audit?action=statement`)).json.rows.filter(
+        (row) => JSON.stringify(row).includes(`"${what}\\`) || row.detail?.what === what,
+      ),
+    (rows) => rows.length > 0,
+  );
+const otherDose = ({ doses }) => doses.find(({ name, id }) => /other/i.test(name + id)) ?? doses[1];
+/** Whether the dose of the other patient counts: its pair with the image in fits. */
+const relation = (plan) => plan.fits.find((fit) => fit.thing === `dose:${otherDose(plan).id}` && fit.with.startsWith('image:')).relation;
+const one = { kind: 'one-person', words: 'The birth date was typed wrong at the scanner' };
+
+test('files of two patients are used together once a person has stated that they are one, in every room, and over a restart', async () => {
+  const before = await document('case-1');
+  assert.equal(before.statement, null);
+  assert.equal(relation(before), 'patient');
+  const [room, second] = await Promise.all([0, 1].map(async () => (await call(`${api}/rooms`, 'POST', { plan: 'case-1' })).json.id));
+  const [ann, ben] = [await Client.enter(daemon.url, room, { name: 'Ann' }), await Client.enter(daemon.url, second, { name: 'Ben' })];
+  clients.push(ann, ben);
+  const told = await state('case-1', one, `?room=${room}`, ann.headers);
+  assert.equal(told.status, 204, told.text);
+  for (const client of [ann, ben]) await client.message('plan', ({ plan }) => plan.statement?.state === 'used');
+  const now = await loaded('case-1', ({ statement }) => statement);
+  assert.deepEqual(
+    [now.statement.kind, now.statement.state, now.statement.by, now.statement.words],
+    ['one-person', 'used', 'Ann', one.words],
+  );
+  assert.equal(relation(now), 'same');
+  assert.equal(now.patients.length, 2); // who compares them still sees both
+  assert.equal(otherDose(now).patient, now.shown_patient);
+  assert.match(JSON.stringify(now.report), /Ann has stated that they are of one person/);
+  const [row] = await audit('made');
+  assert.deepEqual(
+    [row.action, row.name, row.detail.kind, /^[0-9a-f]{64}$/.test(row.detail.revision)],
+    ['statement', 'Ann', 'one-person', true],
+  );
+  for (const client of clients.splice(0)) client.cut();
+  await daemon.stop();
+  await start();
+  assert.equal((await openPlan(daemon.url, 'case-1')).state, 'done', daemon.log());
+  const again = await loaded('case-1', ({ statement }) => statement);
+  assert.deepEqual([again.statement, relation(again)], [now.statement, 'same']);
+});
+
+test('it is withdrawn by a person, and by itself when the files change', async () => {
+  assert.equal((await call(`${api}/plans/case-1/statement`, 'DELETE')).status, 204);
+  assert.equal(relation(await loaded('case-1', ({ statement }) => statement === null)), 'patient');
+  assert.equal((await call(`${api}/plans/case-1/statement`, 'DELETE')).status, 404);
+  assert.equal((await state('case-1', one)).status, 204);
+  await loaded('case-1', ({ statement }) => statement?.state === 'used');
+  putDose(join(plans, 'case-1'), asWritten, { uid: '1.2.90', file: 'third.dcm', plan: '1.2.71' });
+  assert.equal((await call(`${api}/plans/case-1/close`, 'POST', {})).status, 204);
+  assert.equal((await openPlan(daemon.url, 'case-1')).state, 'done');
+  const changed = await loaded('case-1', ({ statement }) => statement);
+  assert.deepEqual([changed.statement.state, relation(changed)], ['outdated', 'patient']);
+  await audit('outdated');
+  rmSync(join(plans, 'case-1', 'third.dcm')); // the files of then: what was withdrawn stays so
+  assert.equal((await call(`${api}/plans/case-1/close`, 'POST', {})).status, 204);
+  assert.equal((await openPlan(daemon.url, 'case-1')).state, 'done');
+  assert.equal((await loaded('case-1', ({ statement }) => statement)).statement.state, 'outdated');
+});
+
+test('who the patient is that the files do not name is stated, told in full by /identity alone, and the files win', async () => {
+  await openPlan(daemon.url, 'nameless');
+  const before = await document('nameless');
+  assert.deepEqual([before.patients, before.is_phantom], [[], false]);
+  const told = await state('nameless', { kind: 'identity', ...ottilie });
+  assert.equal(told.status, 204, told.text);
+  const now = await loaded('nameless', ({ statement }) => statement);
+  assert.deepEqual(
+    [now.statement.kind, now.statement.state, now.patients[0].masked, now.shown_patient],
+    ['identity', 'used', 'O. M. …327', 0],
+  );
+  const full = (await call(`${api}/plans/nameless/identity`)).json.patients;
+  assert.deepEqual(
+    full.map(({ name, id, birth_date }) => ({ name, id, birth_date })),
+    [ottilie],
+  ); // prettier-ignore
+  const rows = await audit('made');
+  for (const text of [JSON.stringify(now), JSON.stringify(rows), daemon.log(), JSON.stringify((await call(`${api}/plans`)).json)])
+    for (const secret of secrets) assert.ok(!text.includes(secret), secret);
+  putWhole(join(plans, 'nameless'), quirin);
+  assert.equal((await call(`${api}/plans/nameless/close`, 'POST', {})).status, 204);
+  assert.equal((await openPlan(daemon.url, 'nameless')).state, 'done');
+  const named = await loaded('nameless', ({ statement }) => statement);
+  assert.equal(named.statement.state, 'contradicted');
+  assert.deepEqual(
+    named.patients.map(({ masked }) => masked),
+    ['Q. Z. …419'],
+  ); // prettier-ignore
+  assert.ok(named.report.lines.some(({ severity, code }) => severity === 'error' && code === 'patient.stated-differs'));
+});
+
+test('what cannot be stated says why, and changes nothing', async () => {
+  for (const [plan, body, status, pointer, code] of [
+    ['case-1', { kind: 'sure' }, 422, '/kind', 'enum'],
+    ['case-1', { kind: 'one-person' }, 422, '/words', 'required'],
+    ['case-1', { kind: 'one-person', words: 'one' }, 422, '/words', 'length'],
+    ['case-1', { ...one, id: '1' }, 422, '/id', 'unknown-field'],
+    ['case-1', { kind: 'identity', ...ottilie }, 409, '/kind', 'patients'],
+    ['nameless', one, 409, '/kind', 'patients'],
+    ['nameless', { kind: 'identity', ...ottilie, birth_date: '1955-02-30' }, 422, '/birth_date', 'pattern'],
+    ['nameless', { kind: 'identity', ...ottilie, name: 'a\nb' }, 422, '/name', 'pattern'],
+    ['none', one, 404, '', ''],
+  ]) {
+    const { json, ...answer } = await state(plan, body);
+    assert.deepEqual([answer.status, json.pointer ?? '', json.code ?? ''], [status, pointer, code], JSON.stringify(body));
+  }
+});
+
+test('a server that others may reach takes no statement', async () => {
+  const open = await startDaemon({ plans: [plans], args: ['--stub', '--open-to-everybody'] });
+  try {
+    await openPlan(open.url, 'case-1');
+    const answer = await call(`${open.url}/api/v1/plans/case-1/statement`, 'POST', one);
+    assert.deepEqual([answer.status, answer.json.code], [403, 'identity']);
+  } finally {
+    await open.stop();
+  }
+});
+
+test('on a full disk nothing is stated, and the plan stays as it was', async (t) => {
+  const disk = new FullDisk();
+  if (disk.missing) {
+    disk.remove();
+    t.skip(disk.missing);
+    return;
+  }
+  const own = await startDaemon({ plans: [plans], data: disk.data, args: ['--stub', '--disk-reserve-mib', '0'] });
+  try {
+    const opened = await openPlan(own.url, 'case-1');
+    assert.equal(opened.state, 'done', JSON.stringify(opened) + own.log());
+    const path = `${own.url}/api/v1/plans/case-1`;
+    const made = await until(
+      () => call(`${path}/statement`, 'POST', one),
+      ({ status }) => status !== 503,
+    ); // prettier-ignore
+    assert.equal(made.status, 204, made.text + own.log());
+    await until(
+      () => call(path),
+      ({ json }) => json.state === 'ready' && json.statement?.state === 'used',
+    ); // prettier-ignore
+    disk.fill(own.child);
+    const words = 'x'.repeat(290); // what is left of the last block is used up
+    const answer = await until(
+      () => call(`${path}/statement`, 'POST', { ...one, words }),
+      ({ status }) => status === 507,
+    );
+    assert.equal(answer.json.type, '/problems/storage');
+    const { json: now } = await until(
+      () => call(path),
+      ({ json }) => json.state === 'ready',
+    ); // prettier-ignore
+    assert.equal(now.statement.state, 'used');
+    assert.equal((await call(`${path}/statement`, 'DELETE')).status, 507);
+    assert.equal((await call(path)).json.statement.state, 'used');
+  } finally {
+    await own.stop();
+    disk.remove();
+  }
+});
