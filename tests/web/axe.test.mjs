@@ -83,7 +83,8 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     await page.keyboard.press('Home');
     await page.evaluate(() => {
       // at once: letters that come a while apart are searched for one by one
-      for (const key of 'scal') document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
+      for (const key of 'scal')
+        document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
     });
     assert.equal(await current(), 'row-region:scalp');
     const style = async () => (await world.scene(room)).regions.scalp;

@@ -1,6 +1,7 @@
 /* Sign-in: passwords and their pauses, sessions and their ends, tokens, names of a proxy, the first user. The
  * clock is the test's. */
 #include <sodium.h>
+#include <time.h>
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
@@ -178,6 +179,14 @@ static void an_address_pauses_alone_and_a_network_of_ipv6_is_one(void **state)
 }
 
 /* Half the fastest answer is the bound: the machine is shared, and without the dummy hash an answer takes 1 %. */
+/* Processor time of all threads: how long something takes on the wall depends on what else runs. */
+static int64_t spent_us(void)
+{
+    struct timespec at = { 0 };
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &at);
+    return at.tv_sec * INT64_C(1000000) + at.tv_nsec / 1000;
+}
+
 static void an_unknown_user_takes_as_long_as_a_wrong_password(void **state)
 {
     (void)state;
@@ -185,12 +194,13 @@ static void an_unknown_user_takes_as_long_as_a_wrong_password(void **state)
     auth_world_open(true, false, false);
     auth_world_add_user("ann", "");
     for (int i = 0; i < 4; i++) {
-        int64_t from_us = clock_now_us();
+        const int64_t from_us = spent_us();
         (void)auth_world_sign_in("ann", "wrong horse");
-        known_us = clock_now_us() - from_us < known_us ? clock_now_us() - from_us : known_us;
-        from_us = clock_now_us();
+        const int64_t between_us = spent_us();
         (void)auth_world_sign_in("nobody", "wrong horse");
-        unknown_us = clock_now_us() - from_us < unknown_us ? clock_now_us() - from_us : unknown_us;
+        const int64_t to_us = spent_us();
+        known_us = between_us - from_us < known_us ? between_us - from_us : known_us;
+        unknown_us = to_us - between_us < unknown_us ? to_us - between_us : unknown_us;
     }
     assert_true(unknown_us > known_us / 2);
 }
