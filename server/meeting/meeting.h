@@ -4,9 +4,7 @@
  * (now_ms, since 1970, is passed in). One thread. */
 #include "server/auth/secret.h"
 #include "server/store/store_rows.h"
-#include "server/wire/identity.h"
-#include "server/wire/json.h"
-#include "wire_gen.h"
+#include "server/wire/named.h"
 
 enum {
     MEETING_MAX_CASES = 40,
@@ -27,12 +25,6 @@ struct meeting_link {
     bool allows_guests, is_ended;
     int64_t expires_ms;
     char maker[STORE_USER], name[161]; /* the user who made it, what it is for; "": not known */
-};
-
-struct meeting_person {       /* who may come without a link */
-    char who[STORE_USER + 1]; /* a user's id, or @ and a group's */
-    bool has_role;            /* else the highest that they have on the plans of the cases */
-    enum wire_member_role role;
 };
 
 struct meeting_visit {
@@ -60,7 +52,7 @@ struct meeting {
     int64_t since_ms;                                               /* since when it is */
     struct meeting_case *cases[MEETING_MAX_CASES];
     size_t n_cases;
-    struct meeting_person people[MEETING_MAX_PEOPLE];
+    struct named people[MEETING_MAX_PEOPLE]; /* without a role: the highest that they have on the plans of the cases */
     size_t n_people;
     struct meeting_link links[MEETING_MAX_LINKS];
     size_t n_links;
@@ -131,5 +123,5 @@ void meeting_link_digits(const struct meeting_link *link, char digits[9]);
 
 /* ---- on disk ---- */
 NODISCARD struct store_meeting *meeting_write(const struct meeting *meeting); /* NULL: no memory */
-/* NULL: it is not readable. */
+/* NULL: it is not readable, or there is no memory. */
 NODISCARD struct meeting *meeting_read(const struct store_meeting *row);

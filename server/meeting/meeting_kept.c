@@ -205,15 +205,18 @@ static void read_visits(struct meeting_case *one, const cJSON *list)
     }
 }
 
+/* False: no memory. A row that is no good is left out. */
 static bool read_case(struct meeting *meeting, const struct store_meeting_case *row)
 {
     struct problem problem = { 0 };
     cJSON *json = row->body ? json_read(row->body, strlen(row->body), &problem) : NULL;
+    if (!json && problem.type == PROBLEM_INTERNAL) /* else its time and decision would be lost with the next write */
+        return false;
     if (!id_is_valid(row->id) || strlen(row->id) >= MEETING_ID || (row->plan[0] && !id_is_valid(row->plan)) ||
         (row->room[0] && !id_is_valid(row->room)) || meeting->n_cases == MEETING_MAX_CASES ||
         meeting_find(meeting, row->id)) {
         cJSON_Delete(json);
-        return false;
+        return true;
     }
     struct meeting_case *one = mem_new(sizeof *one);
     mem_put_text(one->id, sizeof one->id, row->id);
@@ -244,7 +247,10 @@ struct meeting *meeting_read(const struct store_meeting *row)
         return NULL;
     }
     for (size_t i = 0; i < row->n_cases; i++)
-        (void)read_case(meeting, &row->cases[i]);
+        if (!read_case(meeting, &row->cases[i])) {
+            meeting_free(meeting);
+            return NULL;
+        }
     if (!meeting_find(meeting, meeting->now))
         meeting->now[0] = 0;
     return meeting;

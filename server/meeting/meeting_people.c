@@ -6,47 +6,12 @@
 #include "server/meeting/meeting.h"
 #include "server/wire/random.h"
 
-static bool is_named(const char *named, const struct identity *who)
-{
-    if (named[0] != '@')
-        return strcmp(named, who->user) == 0;
-    for (size_t i = 0; i < who->n_groups; i++)
-        if (strcmp(named + 1, who->groups[i]) == 0)
-            return true;
-    return false;
-}
-
-static int rank(enum wire_member_role role)
-{
-    static const int ranks[] = {
-        [WIRE_MEMBER_ROLE_WALL] = 0,      [WIRE_MEMBER_ROLE_OBSERVER] = 1, [WIRE_MEMBER_ROLE_REVIEWER] = 2,
-        [WIRE_MEMBER_ROLE_PRESENTER] = 3, [WIRE_MEMBER_ROLE_PLANNER] = 4,
-    };
-    return ranks[role];
-}
-
 bool meeting_is_barred(const struct meeting *meeting, const char *user)
 {
     for (size_t i = 0; user[0] && i < meeting->n_barred; i++)
         if (strcmp(meeting->barred[i], user) == 0)
             return true;
     return false;
-}
-
-/* The entry that gives this person most: the one of their own, else the highest of their groups. NULL: none. */
-static const struct meeting_person *find_person(const struct meeting *meeting, const struct identity *who)
-{
-    const struct meeting_person *found = NULL;
-    for (size_t i = 0; i < meeting->n_people; i++) {
-        const struct meeting_person *person = &meeting->people[i];
-        if (!is_named(person->who, who))
-            continue;
-        if (person->who[0] != '@')
-            return person;
-        if (!found || !person->has_role || (found->has_role && rank(person->role) > rank(found->role)))
-            found = person;
-    }
-    return found;
 }
 
 static bool is_owner(const struct meeting *meeting, const struct identity *who)
@@ -56,8 +21,8 @@ static bool is_owner(const struct meeting *meeting, const struct identity *who)
 
 bool meeting_names(const struct meeting *meeting, const struct identity *who)
 {
-    return is_owner(meeting, who) ||
-           (who->user[0] && !meeting_is_barred(meeting, who->user) && find_person(meeting, who));
+    return is_owner(meeting, who) || (who->user[0] && !meeting_is_barred(meeting, who->user) &&
+                                      named_find(meeting->people, meeting->n_people, who));
 }
 
 bool meeting_allows(const struct meeting *meeting, const struct identity *who, enum wire_member_role *role)
@@ -67,7 +32,7 @@ bool meeting_allows(const struct meeting *meeting, const struct identity *who, e
         return who->user[0] != 0;
     if (meeting_is_barred(meeting, who->user))
         return false;
-    const struct meeting_person *person = find_person(meeting, who);
+    const struct named *person = named_find(meeting->people, meeting->n_people, who);
     if (person && person->has_role)
         *role = person->role;
     for (size_t i = 0; !person && i < meeting->n_came; i++)
@@ -113,15 +78,6 @@ static bool refuse_people(struct problem *problem, size_t index, const char *cod
     return problem_set(problem, PROBLEM_VALIDATION, where, code, "%s", words);
 }
 
-static bool is_who(const char *text)
-{
-    const size_t n = text ? strlen(text) : 0;
-    bool is_right = n >= 1 && n <= STORE_USER && (text[0] == '@' ? n >= 2 : n < STORE_USER);
-    for (size_t i = 0; is_right && i < n; i++)
-        is_right = (unsigned char)text[i] > 32 && text[i] != 127 && (i == 0 || text[i] != '@');
-    return is_right;
-}
-
 static bool read_role(const char *word, enum wire_member_role *role)
 {
     for (size_t i = 0; word && i < wire_member_role_words.n; i++)
@@ -132,7 +88,7 @@ static bool read_role(const char *word, enum wire_member_role *role)
     return false;
 }
 
-static bool read_person(const cJSON *row, size_t index, struct meeting_person *person, struct problem *problem)
+static bool read_person(const cJSON *row, size_t index, struct named *person, struct problem *problem)
 {
     const cJSON *item;
     const char *who = json_text(row, "who");
@@ -143,10 +99,10 @@ static bool read_person(const cJSON *row, size_t index, struct meeting_person *p
                                 strcmp(item->string, "role") !=
                                     0) return refuse_people(problem, index, "unknown-field",
                                                             "an entry of people has the fields who and role alone");
-    if (!is_who(who))
+    if (!named_is_id(who))
         return refuse_people(problem, index, "pattern",
                              "who may come? give the id of a user, or @ and the id of a group");
-    *person = (struct meeting_person){ .has_role = cJSON_HasObjectItem(row, "role") };
+    *person = (struct named){ .has_role = cJSON_HasObjectItem(row, "role") };
     mem_put_text(person->who, sizeof person->who, who);
     if (person->has_role &&
         (!read_role(json_text(row, "role"), &person->role) || person->role == WIRE_MEMBER_ROLE_WALL))
@@ -157,7 +113,7 @@ static bool read_person(const cJSON *row, size_t index, struct meeting_person *p
 bool meeting_set_people(struct meeting *meeting, const cJSON *list, struct problem *problem)
 {
     const cJSON *row;
-    struct meeting_person people[MEETING_MAX_PEOPLE];
+    struct named people[MEETING_MAX_PEOPLE];
     size_t n = 0;
     if (!cJSON_IsArray(list))
         return problem_set(problem, PROBLEM_VALIDATION, "/people", "type", "people must be a list");
@@ -183,16 +139,7 @@ bool meeting_set_people(struct meeting *meeting, const cJSON *list, struct probl
 
 cJSON *meeting_people(const struct meeting *meeting)
 {
-    cJSON *list = cJSON_CreateArray();
-    for (size_t i = 0; i < meeting->n_people; i++) {
-        const struct meeting_person *person = &meeting->people[i];
-        cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "who", person->who);
-        if (person->has_role)
-            cJSON_AddStringToObject(row, "role", wire_member_role_words.words[person->role]);
-        json_append(list, row);
-    }
-    return list;
+    return named_list(meeting->people, meeting->n_people);
 }
 
 /* Characters of UTF-8. */

@@ -330,7 +330,7 @@ static char *audit_text(const struct meeting *meeting, const struct net_meeting_
                                     .after = -1 };
     const struct meeting_case *of = meeting_find(meeting, act->case_id);
     cJSON *json = keep_audit_describe(of ? of->room : "", of ? of->plan : "", &row);
-    char *text = json_print(json);
+    char *text = words ? json_print(json) : NULL; /* without its words the row would not say what was done */
     cJSON_Delete(json);
     cJSON_Delete(detail);
     free(words);

@@ -64,6 +64,20 @@ struct store_answer *store_world_await(struct store_world *world, enum store_eve
     return answer;
 }
 
+void store_world_begin(struct store_world *world)
+{
+    *world = (struct store_world){ 0 };
+    store_world_open(world);
+    store_answer_free(store_world_await(world, STORE_OPENED));
+}
+
+struct store_answer *store_world_reopen(struct store_world *world)
+{
+    store_world_close(world);
+    store_world_open(world);
+    return store_world_await(world, STORE_OPENED);
+}
+
 struct store_room *store_world_read(struct store_world *world, const char *id)
 {
     assert_true(store_read(world->store, id, 99));

@@ -11,6 +11,9 @@ struct store_world {
 };
 
 void store_world_open(struct store_world *world);  /* folder "": a new one */
+void store_world_begin(struct store_world *world); /* a new one, whose answer to being opened is taken */
+/* Closes the store and opens it anew on the same folder: what was read, the caller's. */
+struct store_answer *store_world_reopen(struct store_world *world);
 void store_world_close(struct store_world *world); /* the store alone */
 void store_world_end(struct store_world *world);
 /* The next answer; fails the test when none comes within a minute. */

@@ -14,16 +14,10 @@
 #include "server/room/state/roles.h"
 #include "server/room/state/who.h"
 
-enum { WHO_BYTES = STORE_USER + 1, MAX_DIGITS = 9 };
+enum { MAX_DIGITS = 9 };
 
 static const char is_closed[] = ROOM_IS_CLOSED, needs_sign_in[] = ROOM_NEEDS_SIGN_IN;
 static const char was_removed[] = "you were removed from this room: ask to be let in again";
-
-struct person {          /* who may come in without a link */
-    char who[WHO_BYTES]; /* a user's id, or @ and a group's */
-    bool has_role;       /* else the highest that they may have */
-    enum wire_member_role role;
-};
 
 struct removed { /* not let in again by these links, or without one */
     char key[WHO_KEY], name[161];
@@ -35,7 +29,7 @@ struct admission {
     char owner[STORE_USER]; /* "": made without sign-in */
     bool is_open;           /* whoever has a role on the plan may come in */
     bool is_kept;           /* there is something of it on disk, perhaps */
-    struct person *people;
+    struct named *people;
     size_t n;
     struct removed *removed; /* the first first; room for ROOM_MAX_REMOVED. NULL: nobody was */
     int n_removed;
@@ -66,32 +60,6 @@ const char *room_owner(const struct room *room)
 
 /* ---- without a link --------------------------------------------------------------------------------------------- */
 
-static bool is_named(const char *named, const struct identity *who)
-{
-    if (named[0] != '@')
-        return strcmp(named, who->user) == 0;
-    for (size_t i = 0; i < who->n_groups; i++)
-        if (strcmp(named + 1, who->groups[i]) == 0)
-            return true;
-    return false;
-}
-
-/* The entry that gives this person most: the one of their own, else the highest of their groups. NULL: none. */
-static const struct person *find_person(const struct admission *admission, const struct identity *who)
-{
-    const struct person *found = NULL;
-    for (size_t i = 0; i < admission->n; i++) {
-        const struct person *person = &admission->people[i];
-        if (!is_named(person->who, who))
-            continue;
-        if (person->who[0] != '@')
-            return person;
-        if (!found || !person->has_role || (found->has_role && role_rank(person->role) > role_rank(found->role)))
-            found = person;
-    }
-    return found;
-}
-
 /* Whether the meeting that the room is a case of lets this user in. */
 static bool is_asked_to_meeting(const struct room *room, const struct identity *who, enum wire_member_role *role)
 {
@@ -112,7 +80,7 @@ static bool has_own_right(const struct room *room, const struct identity *who, e
         return false;
     if (strcmp(admission->owner, who->user) == 0)
         return true;
-    const struct person *person = find_person(admission, who);
+    const struct named *person = named_find(admission->people, admission->n, who);
     if (person && person->has_role)
         *role = role_lower(*role, person->role);
     /* a room of before there was sign-in is nobody's */
@@ -288,20 +256,6 @@ struct admitted admission_decide(struct room *room, const struct identity *who, 
 
 /* ---- documents -------------------------------------------------------------------------------------------------- */
 
-static cJSON *list_people(const struct admission *admission)
-{
-    cJSON *list = cJSON_CreateArray();
-    for (size_t i = 0; i < admission->n; i++) {
-        const struct person *person = &admission->people[i];
-        cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "who", person->who);
-        if (person->has_role)
-            cJSON_AddStringToObject(row, "role", wire_member_role_words.words[person->role]);
-        json_append(list, row);
-    }
-    return list;
-}
-
 cJSON *admission_document(const struct room *room)
 {
     static const char user[] = "user:";
@@ -309,7 +263,7 @@ cJSON *admission_document(const struct room *room)
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "owner", admission->owner);
     cJSON_AddBoolToObject(json, "is_open", admission->is_open);
-    json_add(json, "people", list_people(admission));
+    json_add(json, "people", named_list(admission->people, admission->n));
     cJSON *list = cJSON_CreateArray();
     for (int i = 0; i < admission->n_removed; i++) {
         const struct removed *removed = &admission->removed[i];
@@ -323,16 +277,7 @@ cJSON *admission_document(const struct room *room)
     return json;
 }
 
-static bool is_who(const char *text)
-{
-    const size_t n = text ? strlen(text) : 0;
-    bool is_right = n >= 1 && n < WHO_BYTES && (text[0] == '@' ? n >= 2 : n < STORE_USER);
-    for (size_t i = 0; is_right && i < n; i++)
-        is_right = (unsigned char)text[i] > 32 && text[i] != 127 && (i == 0 || text[i] != '@');
-    return is_right;
-}
-
-static bool read_person(const cJSON *row, size_t index, struct person *person, struct problem *problem)
+static bool read_person(const cJSON *row, size_t index, struct named *person, struct problem *problem)
 {
     static const char *const names[] = { "who", "role", NULL };
     char where[40];
@@ -342,7 +287,7 @@ static bool read_person(const cJSON *row, size_t index, struct person *person, s
     if (!body_names_are(row, names, where, problem))
         return false;
     const char *who = json_text(row, "who"), *role = json_text(row, "role");
-    if (!is_who(who))
+    if (!named_is_id(who))
         return problem_set(problem, PROBLEM_VALIDATION, where, "pattern",
                            "who may come in? give the id of a user, or @ and the id of a group");
     (void)snprintf(person->who, sizeof person->who, "%s", who);
@@ -354,7 +299,7 @@ static bool read_person(const cJSON *row, size_t index, struct person *person, s
 }
 
 /* The list, for free(); NULL with problem. */
-static struct person *read_people(const cJSON *list, size_t *n, struct problem *problem)
+static struct named *read_people(const cJSON *list, size_t *n, struct problem *problem)
 {
     const cJSON *row;
     const int count = cJSON_GetArraySize(list);
@@ -368,7 +313,7 @@ static struct person *read_people(const cJSON *list, size_t *n, struct problem *
                     ROOM_MAX_PEOPLE);
         return NULL;
     }
-    struct person *people = mem_array((size_t)count + 1, sizeof *people, 1 << 20, NULL);
+    struct named *people = mem_array((size_t)count + 1, sizeof *people, 1 << 20, NULL);
     if (!people) {
         (void)json_no_memory(problem, "the people of the room");
         return NULL;
@@ -384,7 +329,7 @@ static struct person *read_people(const cJSON *list, size_t *n, struct problem *
     return people;
 }
 
-static bool check_roles(const struct person *people, size_t n, enum wire_member_role most, struct problem *problem)
+static bool check_roles(const struct named *people, size_t n, enum wire_member_role most, struct problem *problem)
 {
     for (size_t i = 0; i < n; i++)
         if (people[i].has_role && role_rank(people[i].role) > role_rank(most))
@@ -405,7 +350,7 @@ bool admission_patch(struct room *room, const cJSON *patch, enum wire_member_rol
         return false;
     if (is_open && !cJSON_IsBool(is_open))
         return body_refuse_type(problem, "/is_open", "true or false");
-    struct person *people = list ? read_people(list, &n, problem) : NULL;
+    struct named *people = list ? read_people(list, &n, problem) : NULL;
     if ((list && !people) || !check_roles(people, n, most, problem)) {
         free(people);
         return false;
@@ -476,7 +421,7 @@ bool admission_write(const struct room *room, struct store_room *kept)
         return true;
     }
     cJSON *json = cJSON_CreateObject();
-    json_add(json, "people", list_people(admission));
+    json_add(json, "people", named_list(admission->people, admission->n));
     json_add(json, "removed", write_removed(admission));
     json_add(json, "users", users);
     kept->people = json_print(json);
@@ -511,7 +456,7 @@ void admission_read(struct room *room, const struct store_room *kept)
     admission->is_kept = kept->people != NULL;
     if (kept->people && !json)
         log_error("room %s: who may come in is not readable in the database: %s", room->id, problem.detail);
-    struct person *people = list ? read_people(list, &admission->n, &problem) : NULL;
+    struct named *people = list ? read_people(list, &admission->n, &problem) : NULL;
     if (list && !people)
         log_error("room %s: who may come in is left out: %s", room->id, problem.detail);
     free(admission->people);
@@ -538,7 +483,7 @@ bool room_people_name(const char *owner, const char *people, const struct identi
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(json, "people"))
     {
         const char *named = json_text(row, "who");
-        is_there = is_there || (has_role && named && is_named(named, who));
+        is_there = is_there || (has_role && named && named_is(named, who));
     }
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(json, "users")) is_there =
         is_there || (!who->folders[0] && cJSON_IsString(row) && strcmp(row->valuestring, who->user) == 0);

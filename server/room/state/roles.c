@@ -13,16 +13,6 @@ bool role_has_right(enum wire_member_role role, enum wire_right right)
     return (wire_role_rights[role] >> right & 1U) != 0;
 }
 
-int role_rank(enum wire_member_role role)
-{
-    static const int ranks[] = { [WIRE_MEMBER_ROLE_WALL] = 0,
-                                 [WIRE_MEMBER_ROLE_OBSERVER] = 1,
-                                 [WIRE_MEMBER_ROLE_REVIEWER] = 2,
-                                 [WIRE_MEMBER_ROLE_PRESENTER] = 3,
-                                 [WIRE_MEMBER_ROLE_PLANNER] = 4 };
-    return ranks[role];
-}
-
 enum wire_member_role role_lower(enum wire_member_role a, enum wire_member_role b)
 {
     return role_rank(a) < role_rank(b) ? a : b;

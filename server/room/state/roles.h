@@ -3,12 +3,11 @@
  * apart. Internal to server/room, but for server/http, which asks for the rights of a call. */
 #include "server/room/state/room_state.h"
 #include "server/wire/message.h"
+#include "server/wire/named.h"
 
 enum { ROLES_N_COLORS = 12 };
 
 bool role_has_right(enum wire_member_role role, enum wire_right right);
-/* Orders roles: who has a higher one has all rights of a lower one. */
-int role_rank(enum wire_member_role role);
 enum wire_member_role role_lower(enum wire_member_role a, enum wire_member_role b);
 /* The role of this word; false: it is none's. */
 bool role_of_word(const char *word, enum wire_member_role *role);

@@ -31,13 +31,6 @@ static int tear_down(void **state)
     return 0;
 }
 
-static struct store_answer *open_again(void)
-{
-    store_world_close(&world);
-    store_world_open(&world);
-    return store_world_await(&world, STORE_OPENED);
-}
-
 static struct store_item *made_items(size_t n)
 {
     struct store_item *items = mem_array(n, sizeof *items, 1 << 20, NULL);
@@ -80,7 +73,7 @@ static void what_was_written_is_read_after_opening_again(void **state)
     written->links[1].is_one_use = written->links[1].is_used = true;
     (void)snprintf(written->links[1].person, sizeof written->links[1].person, "0123abcd");
     store_world_write(&world, written);
-    struct store_answer *opened = open_again();
+    struct store_answer *opened = store_world_reopen(&world);
     assert_int_equal(opened->n_rooms, 1);
     assert_string_equal(opened->rooms[0].id, "7q4k-m2wz");
     assert_string_equal(opened->rooms[0].plan, "head");
@@ -197,7 +190,7 @@ static void what_was_handed_over_is_written_before_it_closes(void **state)
     (void)state;
     for (uint32_t i = 1; i <= 300; i++)
         assert_true(store_write(world.store, store_made_room("7q4k-m2wz", i, 10, 1), i));
-    store_answer_free(open_again());
+    store_answer_free(store_world_reopen(&world));
     struct store_room *read = store_world_read(&world, "7q4k-m2wz");
     assert_int_equal(read->revision, 300);
     store_room_free(read);

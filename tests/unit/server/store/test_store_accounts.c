@@ -12,9 +12,7 @@ static struct store_world world;
 static int set_up(void **state)
 {
     (void)state;
-    world = (struct store_world){ 0 };
-    store_world_open(&world);
-    store_answer_free(store_world_await(&world, STORE_OPENED));
+    store_world_begin(&world);
     return 0;
 }
 
@@ -32,13 +30,6 @@ static void write_accounts(struct store_accounts *accounts)
     assert_int_equal(written->ticket, 11);
     assert_string_equal(written->error.text, "");
     store_answer_free(written);
-}
-
-static struct store_answer *open_again(void)
-{
-    store_world_close(&world);
-    store_world_open(&world);
-    return store_world_await(&world, STORE_OPENED);
 }
 
 static struct store_accounts *one_of_each(void)
@@ -81,7 +72,7 @@ static void accounts_come_back_as_they_were(void **state)
 {
     (void)state;
     write_accounts(one_of_each());
-    struct store_answer *opened = open_again();
+    struct store_answer *opened = store_world_reopen(&world);
     const struct store_accounts *read = opened->accounts;
     assert_int_equal(read->n_users, 1);
     assert_string_equal(read->users[0].id, "ann");
@@ -116,7 +107,7 @@ static void accounts_change_and_end(void **state)
     change->sessions[0].is_deleted = true;
     change->owners[0].is_deleted = true;
     write_accounts(change);
-    struct store_answer *opened = open_again();
+    struct store_answer *opened = store_world_reopen(&world);
     assert_int_equal(opened->accounts->n_users, 1);
     assert_true(opened->accounts->users[0].is_disabled);
     assert_string_equal(opened->accounts->users[0].groups, "board\n");

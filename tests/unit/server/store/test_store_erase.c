@@ -60,9 +60,7 @@ static void put_plan(const char *plan, const char *room_id, const char *record_i
 static int set_up(void **state)
 {
     (void)state;
-    world = (struct store_world){ 0 };
-    store_world_open(&world);
-    store_answer_free(store_world_await(&world, STORE_OPENED));
+    store_world_begin(&world);
     folder_put_text(world.folder, "cache/all", "");
     put_plan(hidden_id, "7q4k-m2wz", "i-1");
     put_plan(folder_id, "8nvg-ytgm", "i-2");

@@ -12,9 +12,7 @@ static struct store_world world;
 static int set_up(void **state)
 {
     (void)state;
-    world = (struct store_world){ 0 };
-    store_world_open(&world);
-    store_answer_free(store_world_await(&world, STORE_OPENED));
+    store_world_begin(&world);
     return 0;
 }
 
@@ -23,13 +21,6 @@ static int tear_down(void **state)
     (void)state;
     store_world_end(&world);
     return 0;
-}
-
-static struct store_answer *open_again(void)
-{
-    store_world_close(&world);
-    store_world_open(&world);
-    return store_world_await(&world, STORE_OPENED);
 }
 
 /* A write of a meeting of these many cases, the n-th of plan "plan-N". body NULL: of its end. */
@@ -66,7 +57,7 @@ static void a_meeting_comes_back_with_its_cases_in_their_order(void **state)
     (void)state;
     write_meeting(write_of("m-1", "{\"name\":\"Board\"}", 3));
     write_meeting(write_of("m-2", "{}", 0));
-    struct store_answer *opened = open_again();
+    struct store_answer *opened = store_world_reopen(&world);
     assert_int_equal(opened->n_meetings, 2);
     const struct store_meeting *meeting = opened->meetings[0];
     assert_string_equal(meeting->id, "m-1");
@@ -85,13 +76,13 @@ static void it_changes_and_ends(void **state)
     (void)state;
     write_meeting(write_of("m-1", "{\"n\":1}", 3));
     write_meeting(write_of("m-1", "{\"n\":2}", 1));
-    struct store_answer *opened = open_again();
+    struct store_answer *opened = store_world_reopen(&world);
     assert_int_equal(opened->n_meetings, 1);
     assert_string_equal(opened->meetings[0]->body, "{\"n\":2}");
     assert_int_equal(opened->meetings[0]->n_cases, 1);
     store_answer_free(opened);
     write_meeting(write_of("m-1", NULL, 0));
-    opened = open_again();
+    opened = store_world_reopen(&world);
     assert_int_equal(opened->n_meetings, 0);
     store_answer_free(opened);
     assert_int_equal(store_file_number(world.path, "SELECT count(*) FROM meeting_cases"), 0);
@@ -112,7 +103,7 @@ static void an_erased_plan_is_struck_out_of_its_cases(void **state)
         assert_string_equal(erased->error.text, "");
         store_answer_free(erased);
     }
-    struct store_answer *opened = open_again();
+    struct store_answer *opened = store_world_reopen(&world);
     const struct store_meeting *meeting = opened->meetings[0];
     assert_int_equal(meeting->n_cases, 3);
     assert_string_equal(meeting->cases[0].plan, "plan-1");
@@ -151,7 +142,7 @@ static void a_database_of_version_7_keeps_its_rooms_and_gets_meetings(void **sta
     store_room_free(read);
     store_answer_free(opened);
     write_meeting(write_of("m-1", "{}", 1));
-    opened = open_again();
+    opened = store_world_reopen(&world);
     assert_int_equal(opened->n_meetings, 1);
     store_answer_free(opened);
 }

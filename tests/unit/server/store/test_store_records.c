@@ -16,9 +16,7 @@ static struct store_world world;
 static int set_up(void **state)
 {
     (void)state;
-    world = (struct store_world){ 0 };
-    store_world_open(&world);
-    store_answer_free(store_world_await(&world, STORE_OPENED));
+    store_world_begin(&world);
     return 0;
 }
 
