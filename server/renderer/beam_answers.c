@@ -26,10 +26,11 @@ struct beam_asked {
     const struct plan *plan;
     const struct region_set *regions; /* those that are used */
     struct beam_shown shown;
-    const struct beam *planned; /* NULL: of a draft in a plan without beams */
-    double cylinder_mm;         /* diameter in which univels are counted; NaN: none */
-    bool is_ring;               /* that diameter was asked for, and is not the beam's aperture */
-    struct ray_band *bands;     /* owned; along the whole axis, depths from the entry */
+    const struct beam *planned;          /* NULL: of a draft in a plan without beams */
+    double cylinder_mm;                  /* diameter in which univels are counted; NaN: none */
+    const struct beam_delivery *opening; /* of a beam without a diameter; NULL: none is known */
+    bool is_ring;                        /* that diameter was asked for, and is not the beam's aperture */
+    struct ray_band *bands;              /* owned; along the whole axis, depths from the entry */
     size_t n_bands;
 };
 
@@ -41,6 +42,9 @@ static bool beam_asked_fill(struct beam_asked *asked, double ring_mm, struct pro
     asked->cylinder_mm = ring_mm > 0 ? ring_mm : own_mm;
     asked->is_ring = ring_mm > 0 && !(fabs(ring_mm - own_mm) <= SAME_DIAMETER_MM);
     asked->planned = asked->shown.beam >= 0 ? &asked->plan->beams[asked->shown.beam] : NULL;
+    bool has_opening = !(asked->cylinder_mm > 0) && asked->planned && !asked->shown.is_draft &&
+                       asked->planned->has_delivery && asked->planned->delivery.outline.n_polygons > 0;
+    asked->opening = has_opening ? &asked->planned->delivery : NULL;
     return ray_bands_all(asked->regions, asked->shown.entry_lps_mm, asked->shown.direction, &asked->bands,
                          &asked->n_bands, &err) ||
            problem_set(problem, PROBLEM_MEMORY, "", "", "%s", err.text);
@@ -150,23 +154,39 @@ static void add_outline(cJSON *json, const struct beam_asked *asked)
     cJSON_AddItemToObject(json, "outline", outline);
 }
 
-/* The univels of regions inside the aperture or the ring, the first met first. */
+_Static_assert((int)BEAM_OUTLINE_MAX_POINTS <= (int)REGION_PRISM_MAX_POINTS, "every outline can be counted in");
+static bool count_univels(const struct beam_asked *asked, struct region_in_cylinder *found, struct error *err)
+{
+    const struct vec3 from = asked->shown.entry_lps_mm, direction = asked->shown.direction;
+    if (!asked->opening)
+        return regions_in_cylinder(asked->regions, from, direction, asked->cylinder_mm / 2, found, err);
+    const struct region_prism prism = { .x_lps = asked->opening->collimator_x_lps,
+                                        .y_lps = asked->opening->collimator_y_lps,
+                                        .points_mm = asked->opening->outline.points_mm,
+                                        .ends = asked->opening->outline.ends,
+                                        .n_polygons = asked->opening->outline.n_polygons };
+    return regions_in_prism(asked->regions, from, direction, &prism, found, err);
+}
+
+/* The univels of regions inside the aperture, the opening or the ring, the first met first. */
 static bool add_aperture(cJSON *json, const struct beam_asked *asked, struct problem *problem)
 {
     const struct region_set *set = asked->regions;
     struct error err = { 0 };
-    if (!(asked->cylinder_mm > 0)) {
+    if (!(asked->cylinder_mm > 0) && !asked->opening) {
         cJSON_AddNullToObject(json, "aperture");
         return true;
     }
     struct region_in_cylinder *found = mem_array(set->n_regions + 1, sizeof *found, UINT64_MAX, &err);
-    if (!found || !regions_in_cylinder(set, asked->shown.entry_lps_mm, asked->shown.direction, asked->cylinder_mm / 2,
-                                       found, &err)) {
+    if (!found || !count_univels(asked, found, &err)) {
         free(found);
         return problem_set(problem, PROBLEM_MEMORY, "", "", "%s", err.text);
     }
     cJSON *aperture = cJSON_AddObjectToObject(json, "aperture");
     json_add_finite(aperture, "diameter_mm", asked->cylinder_mm);
+    cJSON_AddItemToObject(aperture, "opening",
+                          asked->opening ? cJSON_CreateString(beam_outline_word(asked->opening->outline.kind))
+                                         : cJSON_CreateNull());
     cJSON_AddBoolToObject(aperture, "is_ring", asked->is_ring);
     cJSON *list = cJSON_AddArrayToObject(aperture, "regions");
     for (;;) {

@@ -1,21 +1,43 @@
 // The numbers of a beam, and where a beam would run, over HTTP.
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { call, demo, openPlan, realData, startDaemon } from './daemon.mjs';
 
 const treated = realData && join(realData, 'dicomrt-oncentra-phantom');
 const skip = treated && existsSync(treated) ? false : 'no real plans on this machine';
-let daemon, api, planned;
+let daemon, api, planned, folder;
+
+/** The demo plan, with its beam shaped by leaves: a square of 40 mm and apart from it a strip that lies beside the head. */
+function writeLeaves(plan) {
+  cpSync(join(demo, 'phantom'), plan, { recursive: true });
+  const facts = JSON.parse(readFileSync(join(plan, 'plan.json'), 'utf8'));
+  const box = ([x0, x1], [y0, y1]) => [
+    [x0, y0],
+    [x1, y0],
+    [x1, y1],
+    [x0, y1],
+  ];
+  const [{ aperture_mm: _, ...beam }] = facts.beams;
+  const outline = { kind: 'leaves', polygons_mm: [box([-20, 20], [-20, 20]), box([900, 950], [-20, 20])] };
+  facts.beams = [{ ...beam, delivery: { collimator_x_lps: [1, 0, 0], collimator_y_lps: [0, 1, 0], outline } }];
+  writeFileSync(join(plan, 'plan.json'), JSON.stringify({ ...facts, name: 'Leaves' }));
+}
 
 before(async () => {
-  daemon = await startDaemon({ plans: skip ? [demo] : [demo, treated] });
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-beam-'));
+  writeLeaves(join(folder, 'leaves'));
+  daemon = await startDaemon({ plans: skip ? [demo, folder] : [demo, treated, folder] });
   api = `${daemon.url}/api/v1`;
   await openPlan(daemon.url, 'phantom');
   planned = (await call(`${api}/plans/phantom`)).json.beams[0];
 });
-after(() => daemon?.stop());
+after(async () => {
+  await daemon?.stop();
+  if (folder) rmSync(folder, { recursive: true });
+});
 
 const makeRoom = async (scene) => {
   const room = (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
@@ -77,6 +99,30 @@ test('the bands of a beam are the innermost regions at its points, and its lengt
     .filter((line) => line && !line.startsWith('#'))
     .map((line) => line.trim().split(/\s+/).map(Number));
   nearAll(card.flat(), [pa, rl, is, z, phi, theta], 2e-5, 'card');
+});
+
+test('the regions in an opening of leaves are those between the cylinders in and around it; a ring that is asked for counts instead', async () => {
+  await openPlan(daemon.url, 'leaves');
+  const of = async (query) => (await ask('beam', query, 'leaves')).aperture;
+  const square = await of({});
+  assert.deepEqual([square.diameter_mm, square.opening, square.is_ring], [null, 'leaves', false]);
+  const [inner, outer] = [await of({ aperture_mm: 40 }), await of({ aperture_mm: 40 * Math.SQRT2 })];
+  assert.deepEqual([inner.diameter_mm, inner.opening, inner.is_ring], [40, null, true]);
+  const share = (list, id) => list.regions.find(({ region }) => region === id)?.share ?? 0;
+  assert.ok(square.regions.length >= 4);
+  for (const { region, share: own, inside_cm3: inside, region_cm3: whole } of square.regions) {
+    assert.ok(share(inner, region) <= own && own <= share(outer, region), region);
+    near(inside, own * whole, 1e-9, region);
+  }
+  // of what is wide in all directions the part is that of the areas: 40 x 40 to pi 20 x 20
+  const cm3 = (list) => list.regions.find(({ region }) => region === 'brain').inside_cm3;
+  near(cm3(square) / cm3(inner), 4 / Math.PI, 0.05, 'brain');
+  const room = (await call(`${api}/rooms`, 'POST', { plan: 'leaves' })).json.id;
+  const scene = draftOf([0, -100, 40], [0, 0, 10]);
+  assert.equal((await call(`${api}/rooms/${room}/scene`, 'PATCH', scene, { 'If-Match': '*' })).status, 200);
+  const drafted = await ask('beam', { room }, 'leaves');
+  assert.equal(drafted.aperture, null, "a draft's collimator is not placed");
+  assert.deepEqual(drafted.planned.aperture, square);
 });
 
 test('an aperture around the whole plan holds all of every region, a narrow one a part', async () => {

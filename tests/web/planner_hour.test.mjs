@@ -9,6 +9,7 @@ import { call, realData, until } from '../api/daemon.mjs';
 import { bytesOf, full, header, missing, newer, shoot, startWorld } from './browser.mjs';
 
 const sizes = {
+  '2560x1440': { viewport: { width: 2560, height: 1440 } },
   '1600x1000': { viewport: { width: 1600, height: 1000 } },
   '1280x720': { viewport: { width: 1280, height: 720 } },
   '1180x820': { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true },

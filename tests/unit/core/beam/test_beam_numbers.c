@@ -180,6 +180,69 @@ static void univels_in_a_cylinder_are_those_whose_centres_are(void **state)
     }
 }
 
+/* A triangle and, apart from it, an L. */
+static const float opening_mm[][2] = { { -20, -5 }, { -3, -12 }, { -8, 15 }, { 2, -20 }, { 25, -20 },
+                                       { 25, -10 }, { 12, -10 }, { 12, 18 }, { 2, 18 } };
+static const uint16_t opening_ends[] = { 3, 9 };
+
+/* Whether the L, two rectangles, or the triangle, three half planes, has the place. */
+static bool opening_has(double u, double v)
+{
+    bool is_in_l = (u > 2 && u < 25 && v > -20 && v < -10) || (u > 2 && u < 12 && v > -20 && v < 18);
+    double sides[3];
+    for (int i = 0; i < 3; i++) {
+        const float *p = opening_mm[i], *q = opening_mm[(i + 1) % 3];
+        sides[i] =
+            ((double)q[0] - (double)p[0]) * (v - (double)p[1]) - ((double)q[1] - (double)p[1]) * (u - (double)p[0]);
+    }
+    return is_in_l || (sides[0] > 0 && sides[1] > 0 && sides[2] > 0);
+}
+
+static void univels_in_an_opening_are_those_whose_centres_are(void **state)
+{
+    (void)state;
+    uint64_t seed = 7, n_inside = 0;
+    for (int trial = 0; trial < 12; trial++) {
+        struct two_layers two;
+        struct region_in_cylinder found[2];
+        struct error err = { 0 };
+        two_layers_make(&two, &seed);
+        struct vec3 from = vec3_scale(random_direction(&seed), 30), direction = random_direction(&seed);
+        if (trial % 3 == 0)
+            direction = two.axes[0][0]; /* along the rows */
+        struct vec3 x = vec3_normalize(vec3_cross(direction, random_direction(&seed)));
+        const struct region_prism prism = { .x_lps = x,
+                                            .y_lps = vec3_cross(direction, x),
+                                            .points_mm = opening_mm,
+                                            .ends = opening_ends,
+                                            .n_polygons = 2 };
+        assert_true(regions_in_prism(&two.set, from, direction, &prism, found, &err));
+        for (size_t layer = 0; layer < 2; layer++) {
+            const struct volume *volume = two.set.layers[layer];
+            uint64_t n = 0;
+            double first = INFINITY;
+            for (uint32_t k = 0; k < volume->grid.size[2]; k++)
+                for (uint32_t j = 0; j < volume->grid.size[1]; j++)
+                    for (uint32_t i = 0; i < volume->grid.size[0]; i++) {
+                        struct vec3 p = vec3_sub(affine_point(&volume->grid.lps_mm_from_ijk, vec3(i, j, k)), from);
+                        if (volume_label(volume, i, j, k) == 0 ||
+                            !opening_has(vec3_dot(p, prism.x_lps), vec3_dot(p, prism.y_lps)))
+                            continue;
+                        n++;
+                        first = fmin(first, vec3_dot(p, direction));
+                    }
+            assert_int_equal(found[layer].n_voxels, n);
+            n_inside += n;
+            if (n > 0)
+                assert_close(found[layer].first_along_mm, first, 1e-9);
+            else
+                assert_true(isinf(found[layer].first_along_mm));
+        }
+        two_layers_finish(&two);
+    }
+    assert_true(n_inside > 0);
+}
+
 static void a_cylinder_through_a_large_box_holds_its_cross_section_times_the_length(void **state)
 {
     (void)state;
@@ -328,6 +391,7 @@ int main(void)
         cmocka_unit_test(no_region_on_the_line_gives_no_bands),
         cmocka_unit_test(a_line_through_two_turned_boxes_is_in_each_from_face_to_face),
         cmocka_unit_test(univels_in_a_cylinder_are_those_whose_centres_are),
+        cmocka_unit_test(univels_in_an_opening_are_those_whose_centres_are),
         cmocka_unit_test(a_cylinder_through_a_large_box_holds_its_cross_section_times_the_length),
         cmocka_unit_test(beams_through_seras_head_are_those_of_ray_casting_in_numpy),
         cmocka_unit_test(the_axis_of_seras_field_meets_the_skin_where_seramc_found_it),

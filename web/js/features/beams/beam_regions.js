@@ -19,6 +19,16 @@ function named({ room, ui }, id) {
   return html`${color ? swatch(color) : nothing}<button class="link" @click=${() => ui.choose('region', id)}>${region?.name ?? id}</button>`;
 }
 
+const openings = { jaws: say.ofJaws, leaves: say.ofLeaves, blocks: say.ofBlocks };
+
+function shapeWords({ diameter_mm: mm, opening, is_ring: isRing }) {
+  if (opening) return { title: say.inOpening, shape: openings[opening], counted: say.countedInOpening };
+  const diameter = number(mm, mm % 1 ? 1 : 0);
+  return isRing
+    ? { title: say.inRing, shape: say.cylinderDrawn({ diameter }), counted: say.counted }
+    : { title: say.inAperture, shape: say.cylinder({ diameter }), counted: say.counted };
+}
+
 function apertureBlock(world, { aperture, planned, is_draft: isDraft }, isOld) {
   if (!aperture) return html`<section class="block"><h3>${say.inAperture}</h3><p class="note">${say.notCounted}</p></section>`;
   const before = isDraft && planned ? planned.aperture : undefined;
@@ -27,9 +37,8 @@ function apertureBlock(world, { aperture, planned, is_draft: isDraft }, isOld) {
     ...(before?.regions ?? []).filter(({ region }) => !aperture.regions.some((other) => other.region === region)),
   ].map(({ region }) => region);
   const of = (list, id) => list?.regions.find(({ region }) => region === id);
-  const diameter = number(aperture.diameter_mm, aperture.diameter_mm % 1 ? 1 : 0);
-  const cylinder = (aperture.is_ring ? say.cylinderDrawn : say.cylinder)({ diameter });
-  return html`<section class="block"><h3 class="beam-head">${aperture.is_ring ? say.inRing : say.inAperture} <span class="dim">${cylinder}</span></h3>
+  const { title, shape, counted } = shapeWords(aperture);
+  return html`<section class="block"><h3 class="beam-head">${title} <span class="dim">${shape}</span></h3>
     ${
       ids.length
         ? html`<table class=${classMap({ 'beam-regions': true, old: isOld })}><thead><tr><th scope="col">${say.region}</th><th scope="col">${say.firstAt}</th><th scope="col">${before !== undefined ? say.insideDraft : say.inside}</th>${before !== undefined ? html`<th scope="col">${say.plannedColumn}</th>` : nothing}</tr></thead>
@@ -38,7 +47,7 @@ function apertureBlock(world, { aperture, planned, is_draft: isDraft }, isOld) {
         return html`<tr><th scope="row">${named(world, id)}</th><td>${Number.isFinite(row?.first_mm) ? mm(row.first_mm) : '–'}</td>
         <td title=${row ? say.insideOf({ inside: number(row.inside_cm3, 2), whole: number(row.region_cm3, 2) }) : nothing}><b>${share(row)}</b></td>${before !== undefined ? html`<td class="planned">${share(of(before, id))}</td>` : nothing}</tr>`;
       })}</tbody></table>
-      <p class="note">${say.counted}</p>`
+      <p class="note">${counted}</p>`
         : html`<p class="note">${say.noRegion}</p>`
     }</section>`;
 }

@@ -103,7 +103,14 @@ export const say = sentences('beams.later', {
   shortestIs: 'From where the target is nearest to the skin',
   shortest: 'Shortest path',
   inAperture: 'Regions in the aperture',
-  notCounted: "Not counted: the diameter of the aperture is not known. Enter one for the draft, or show the ring in the beam's-eye view.",
+  notCounted:
+    "Not counted: neither the diameter of the aperture nor an opening is known. Enter one for the draft, or show the ring in the beam's-eye view.",
+  inOpening: 'Regions in the opening',
+  ofJaws: 'of the jaws',
+  ofLeaves: 'of the leaves',
+  ofBlocks: 'of the blocks',
+  countedInOpening:
+    'Counted: univels of the region itself, without regions inside it, with their centres in the opening at the first control point, however far along the axis; the beam does not widen. First at: from the source end.',
   inRing: 'Regions in the ring',
   cylinder: 'cylinder of {diameter} mm',
   cylinderDrawn: 'drawn, cylinder of {diameter} mm',

@@ -10,12 +10,6 @@ const totalsFirst = ['weighted', 'isoeffective', 'total', 'weighted-total'];
 const order = ['boron', 'gamma', 'nitrogen', 'fast', 'other'];
 
 const componentWords = { boron: say.boron, nitrogen: say.nitrogen, fast: say.fast, gamma: say.gamma, other: say.other };
-const fluenceNames = {
-  'fast-fluence': say.fastFluence,
-  'epithermal-fluence': say.epithermalFluence,
-  'thermal-fluence': say.thermalFluence,
-};
-
 /** "Boron", "nitrogen", ...: the physical components of a dose, for a sentence. */
 export const componentNames = (dose) =>
   ['boron', 'nitrogen', 'fast', 'gamma', 'other']
@@ -70,7 +64,7 @@ function table(plan, scene, answer, isOld) {
       fluences.length
         ? html`<details class="more" ?open=${isFluence(answer.quantity)}><summary>${icon('chevronDown', 12)}<span>${say.nFluences({ n: fluences.length, count: number(fluences.length) })}</span></summary>
       <table><thead><tr><th scope="col">${say.fluence}</th><th scope="col">${unitText(fluences[0].unit)}</th></tr></thead>
-      <tbody>${fluences.map((part) => html`<tr><td>${fluenceNames[part.quantity] ?? quantityName(part.quantity)}</td><td>${part.value === null ? part.reason : significant(part.value)}</td></tr>`)}</tbody></table></details>`
+      <tbody>${fluences.map((part) => html`<tr><td>${quantityName(part.quantity)}</td><td>${part.value === null ? part.reason : significant(part.value)}</td></tr>`)}</tbody></table></details>`
         : nothing
     }
     <p class="note">${noteWords(plan, answer, hasWeights)}</p>`;

@@ -53,7 +53,7 @@ export const say = sentences('dose.plots', {
   weightBoron: 'boron to blood {value}',
   weightCbe: 'CBE {value}',
   weightNitrogen: 'nitrogen {value}',
-  weightFast: 'fast {value}',
+  weightFast: 'fast neutron {value}',
   weightGamma: 'gamma {value}',
   weightOther: 'other {value}',
   unitPer: '{unit} per {per}',
