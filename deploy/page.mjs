@@ -1,7 +1,7 @@
 // Makes the page light to load: node deploy/page.mjs FOLDER, after deploy/web.sh has filled FOLDER.
-//   page/NAME-HASH.js .css .woff2   the modules and the style sheets that index.html names, each joined into one file, and the font;
+//   page/NAME-HASH.js .css .woff2   the modules and the style sheets that a page names, each joined into one file, and the font;
 //                                   modules that are imported on demand (import('...')), and what only they need, are files of their own
-//   index.html                      names those instead, from the root, as it is served at /rooms/ID too; the page of separate modules stays as modules.html, for debugging
+//   index.html, display.html        name those instead, from the root, as it is served at /rooms/ID too; the page of separate modules stays as modules.html, for debugging
 //   licences.txt                    of the libraries and the font
 //   FILE.gz FILE.br                 beside each text file that gets smaller
 // The files in page/ carry a hash of their contents in their names, so the daemon lets browsers keep them for ever.
@@ -18,14 +18,14 @@ const notice = '/*! The licences of lit-html, signals-core and uPlot are in lice
 
 /** Makes one file of a module and all that it imports at once, and one of each module that is imported on demand, which takes from the first what both
  *  need. esbuild alone would cut what they share into many small files, each of them a request that is compressed by itself.
- *  The names carry one hash of everything: files that belong together are never mixed with older ones. @returns {Promise<{main: string}>} */
-async function joinModules(entry) {
+ *  The names carry one hash of everything: files that belong together are never mixed with older ones. @param {string} named what the first file is called @returns {Promise<{main: string}>} */
+async function joinModules(entry, named) {
   const {
     metafile: { outputs },
     outputFiles,
   } = await build({
     ...shared,
-    entryPoints: [{ in: entry, out: 'main' }],
+    entryPoints: [{ in: entry, out: named }],
     entryNames: '[name]-[hash]',
     chunkNames: '[name]-[hash]',
     splitting: true,
@@ -127,11 +127,6 @@ async function joinModules(entry) {
   return { main: `page/${finalName(start)}` };
 }
 
-const source = read('index.html');
-const sheets = [...source.matchAll(/^ *<link rel="stylesheet" href="\/([^"]+)" \/>\n/gm)];
-const script = source.match(/^ *<script type="module" src="\/([^"]+)"><\/script>\n/m);
-if (!sheets.length || !script) throw new Error('index.html names no style sheets or no module in the form that deploy/page.mjs knows');
-
 const shared = {
   absWorkingDir: join(process.cwd(), folder),
   bundle: true,
@@ -142,45 +137,61 @@ const shared = {
   logLevel: 'warning',
   outdir: 'page',
 };
-const { main } = await joinModules(script[1]);
-const style = await build({
-  ...shared,
-  entryNames: '[name]-[hash]',
-  assetNames: '[name]-[hash]',
-  loader: { '.woff2': 'file' },
-  entryPoints: [{ in: 'page.css', out: 'main' }],
-  plugins: [
-    {
-      name: 'sheets',
-      setup({ onLoad, onResolve }) {
-        onResolve({ filter: /^page\.css$/ }, () => ({ path: 'page.css', namespace: 'sheets' }));
-        onLoad({ filter: /.*/, namespace: 'sheets' }, () => ({
-          contents: sheets.map(([, href]) => `@import "./${href}";`).join('\n'),
-          loader: 'css',
-          resolveDir: join(process.cwd(), folder),
-        }));
-      },
-    },
-  ],
-});
-const only = (ending) =>
-  Object.keys(style.metafile.outputs)
-    .filter((name) => name.endsWith(ending))
-    .map((name) => name.replaceAll('\\', '/'));
 
-// The one list of what is loaded first.
-const [css] = only('.css');
-const first = [
-  `<link rel="modulepreload" href="/${main}" />`,
-  ...only('.woff2').map((font) => `<link rel="preload" href="/${font}" as="font" type="font/woff2" crossorigin />`),
-  `<link rel="stylesheet" href="/${css}" />`,
-  `<script type="module" src="/${main}"></script>`,
-];
-let page = source;
-for (const [line] of sheets) page = page.replace(line, '');
-page = page.replace(script[0], first.map((line) => `    ${line}\n`).join(''));
-writeFileSync(join(folder, 'modules.html'), source);
-writeFileSync(join(folder, 'index.html'), page);
+/** Joins style sheets into one file, and puts the fonts that they name beside it. @returns {Promise<{css: string, fonts: string[]}>} */
+async function joinSheets(sheets, name) {
+  const { metafile } = await build({
+    ...shared,
+    entryNames: `${name}-[hash]`,
+    assetNames: '[name]-[hash]',
+    loader: { '.woff2': 'file' },
+    entryPoints: ['page.css'],
+    plugins: [
+      {
+        name: 'sheets',
+        setup({ onLoad, onResolve }) {
+          onResolve({ filter: /^page\.css$/ }, () => ({ path: 'page.css', namespace: 'sheets' }));
+          onLoad({ filter: /.*/, namespace: 'sheets' }, () => ({
+            contents: sheets.map((href) => `@import "./${href}";`).join('\n'),
+            loader: 'css',
+            resolveDir: join(process.cwd(), folder),
+          }));
+        },
+      },
+    ],
+  });
+  const only = (ending) =>
+    Object.keys(metafile.outputs)
+      .filter((path) => path.endsWith(ending))
+      .map((path) => path.replaceAll('\\', '/'));
+  return { css: only('.css')[0], fonts: only('.woff2') };
+}
+
+/** Has a page name the joined files, the one list of what is loaded first, instead of its modules and style sheets. @param {string} name of the joined files @returns {Promise<string>} the page as it was */
+async function joinPage(file, name) {
+  const source = read(file);
+  const sheets = [...source.matchAll(/^ *<link rel="stylesheet" href="\/([^"]+)" \/>\n/gm)];
+  const script = source.match(/^ *<script type="module" src="\/([^"]+)"><\/script>\n/m);
+  if (!sheets.length || !script) throw new Error(`${file} names no style sheets or no module in the form that deploy/page.mjs knows`);
+  const { main } = await joinModules(script[1], name);
+  const { css, fonts } = await joinSheets(
+    sheets.map(([, href]) => href),
+    name,
+  );
+  const first = [
+    `<link rel="modulepreload" href="/${main}" />`,
+    ...fonts.map((font) => `<link rel="preload" href="/${font}" as="font" type="font/woff2" crossorigin />`),
+    `<link rel="stylesheet" href="/${css}" />`,
+    `<script type="module" src="/${main}"></script>`,
+  ];
+  let page = source;
+  for (const [line] of sheets) page = page.replace(line, '');
+  writeFileSync(join(folder, file), page.replace(script[0], first.map((line) => `    ${line}\n`).join('')));
+  return source;
+}
+
+writeFileSync(join(folder, 'modules.html'), await joinPage('index.html', 'main'));
+await joinPage('display.html', 'wall');
 
 const licences = readdirSync(join(folder, 'lib'))
   .filter((name) => name.startsWith('LICENSE.'))
