@@ -4,6 +4,7 @@
 #include "core/base/clock.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_meetings.h"
+#include "server/net/listed.h"
 
 static void add_time(cJSON *json, const char *name, int64_t ms)
 {
@@ -27,8 +28,7 @@ static cJSON *describe_case(const struct api *api, const struct call *call, cons
                             const struct meeting_case *one)
 {
     const bool is_open = net_meeting_case_is_open(api->net, one, &call->identity, call->member);
-    const bool has_room =
-        one->room[0] && (net_room_find(api->net, one->room) || net_room_is_asleep(api->net, one->room));
+    const char *name = one->room[0] ? net_room_name(api->net, one->room) : NULL;
     cJSON *json = cJSON_CreateObject(), *visits = cJSON_CreateArray();
     cJSON_AddStringToObject(json, "id", one->id);
     cJSON_AddNumberToObject(json, "n", (double)meeting_place(meeting, one) + 1);
@@ -37,7 +37,8 @@ static cJSON *describe_case(const struct api *api, const struct call *call, cons
     add_text(json, "label", is_open ? one->label : "");
     add_text(json, "patient", is_open ? one->patient : "");
     add_text(json, "approval", is_open ? one->approval : "");
-    add_text(json, "room", is_open && has_room ? one->room : "");
+    add_text(json, "room", is_open && name ? one->room : "");
+    add_text(json, "room_name", is_open && name ? name : "");
     add_time(json, "began_ms", meeting_first_ms(meeting, one));
     cJSON_AddNumberToObject(json, "spent_ms", (double)meeting_spent_ms(meeting, one, clock_wall_ms()));
     for (size_t i = 0; i < one->n_visits; i++)

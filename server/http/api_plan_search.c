@@ -7,6 +7,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/auth/digest.h"
 #include "server/http/api_access.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
@@ -18,6 +19,7 @@ enum {
     LIMIT_BY_DEFAULT = 50,
     LIMIT_AT_MOST = 200,
     MAX_FOLDERS = 64,
+    FOLDER_ID = 16, /* hex digits of the id of a folder */
     MAX_ROOMS = 10, /* of one plan in the answer */
     ROOM_DAYS = 30, /* a room that was used longer ago is not gone on with */
     MIN_ID = 6      /* letters of a whole id, of which the end is shown */
@@ -41,9 +43,10 @@ struct room_found {
     int64_t used_ms;
 };
 
-struct folder_found {
-    char name[64];
-    int n;
+struct folder_found { /* in which plans lie */
+    const char *path; /* borrowed from a plan, and not ended by 0 */
+    size_t n_path;
+    int n; /* plans */
 };
 
 struct finding {
@@ -151,24 +154,50 @@ static bool is_patient(const struct api *api, const struct call *call, const str
     return is_named || (plan->patient_id[0] && has_text(plan->patient_id, text) && may_name(api, call, plan));
 }
 
-/* The name of the folder that a folder of a plan lies in. */
-static void parent_name(const char *folder, char name[64])
+/* Bytes of the path of the folder that a folder of a plan lies in. */
+static size_t parent_length(const char *folder)
 {
-    const char *last = strrchr(folder, '/'), *first = last;
-    while (first && first > folder && first[-1] != '/')
-        first--;
-    (void)snprintf(name, 64, "%.*s", first && last > first ? (int)(last - first) : 0, first ? first : "");
+    const char *last = strrchr(folder, '/');
+    return last ? (size_t)(last - folder) : 0;
+}
+
+/* An id that stays when other folders come to be called alike, and does not tell the path. */
+static void folder_id(const char *path, size_t n, char id[FOLDER_ID + 1])
+{
+    char hex[DIGEST_TEXT];
+    digest_bytes(path, n, hex);
+    (void)snprintf(id, FOLDER_ID + 1, "%.*s", FOLDER_ID, hex);
+}
+
+/* The end of a path that has so many names. */
+static const char *tail_of(const char *path, size_t n, int n_names)
+{
+    const char *at = path + n;
+    while (at > path && (at[-1] != '/' || --n_names > 0))
+        at--;
+    return at;
+}
+
+/* The path of that many bytes is called so: by its id, or by the end of its path. */
+static bool is_called(const char *path, size_t n_path, const char *name)
+{
+    const size_t n = strlen(name);
+    char id[FOLDER_ID + 1];
+    if (n && n < n_path && path[n_path - n - 1] == '/' && memcmp(path + n_path - n, name, n) == 0)
+        return true;
+    if (n != FOLDER_ID || strspn(name, "0123456789abcdef") != n)
+        return false;
+    folder_id(path, n_path, id);
+    return strcmp(id, name) == 0;
 }
 
 static bool is_in_folder(const struct fleet_plan *plan, const char *folder)
 {
     const size_t n = strlen(folder);
-    char name[64];
     if (n == 0 || (strcmp(folder, "uploads") == 0 && plan->is_uploaded) ||
         (strncmp(plan->folder, folder, n) == 0 && (plan->folder[n] == '/' || plan->folder[n] == 0)))
         return true;
-    parent_name(plan->folder, name);
-    return !plan->is_uploaded && strcmp(name, folder) == 0;
+    return !plan->is_uploaded && is_called(plan->folder, parent_length(plan->folder), folder);
 }
 
 /* A folder in which nothing can be shown, and nothing says that it is meant to be a plan. */
@@ -188,22 +217,26 @@ static int approval_rank(const char *approval)
 
 /* ---- finding ---------------------------------------------------------------------------------------------------- */
 
+static bool is_path(const struct folder_found *folder, const char *path, size_t n)
+{
+    return folder->n_path == n && memcmp(folder->path, path, n) == 0;
+}
+
 static void count_folder(struct finding *finding, const struct fleet_plan *plan)
 {
-    char name[64];
+    const size_t n_path = parent_length(plan->folder);
     size_t i = 0;
     finding->n_all++;
     if (plan->is_uploaded) {
         finding->n_uploads++;
         return;
     }
-    parent_name(plan->folder, name);
-    while (i < finding->n_folders && strcmp(finding->folders[i].name, name) != 0)
+    while (i < finding->n_folders && !is_path(&finding->folders[i], plan->folder, n_path))
         i++;
-    if (i == MAX_FOLDERS || !name[0])
+    if (i == MAX_FOLDERS || n_path == 0)
         return;
     if (i == finding->n_folders)
-        memcpy(finding->folders[finding->n_folders++].name, name, sizeof name);
+        finding->folders[finding->n_folders++] = (struct folder_found){ .path = plan->folder, .n_path = n_path };
     finding->folders[i].n++;
 }
 
@@ -337,13 +370,42 @@ static void add_rooms(const struct api *api, const struct call *call, const stru
     cJSON_AddNumberToObject(json, "n_rooms", n);
 }
 
+/* True if another folder's path ends alike. */
+static bool is_ambiguous(const struct finding *finding, const struct folder_found *folder, const char *tail)
+{
+    const size_t n = folder->n_path - (size_t)(tail - folder->path);
+    for (size_t i = 0; i < finding->n_folders; i++) {
+        const struct folder_found *other = &finding->folders[i];
+        const bool ends_alike =
+            other != folder && other->n_path >= n && memcmp(other->path + other->n_path - n, tail, n) == 0;
+        if (ends_alike && (other->n_path == n || other->path[other->n_path - n - 1] == '/'))
+            return true;
+    }
+    return false;
+}
+
+/* The last name of its path, with as many before it as tell it from the other folders of the answer. */
+static cJSON *name_of(const struct finding *finding, const struct folder_found *folder)
+{
+    const char *tail = tail_of(folder->path, folder->n_path, 1);
+    char name[MAX_FOLDER + 1];
+    for (int n = 2; tail > folder->path && is_ambiguous(finding, folder, tail); n++)
+        tail = tail_of(folder->path, folder->n_path, n);
+    (void)snprintf(name, sizeof name, "%.*s", (int)(folder->path + folder->n_path - tail), tail);
+    return cJSON_CreateString(name);
+}
+
 static cJSON *list_folders(const struct finding *finding)
 {
     cJSON *list = cJSON_CreateArray();
     for (size_t i = 0; i < finding->n_folders; i++) {
+        const struct folder_found *folder = &finding->folders[i];
         cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "name", finding->folders[i].name);
-        cJSON_AddNumberToObject(row, "n", finding->folders[i].n);
+        char id[FOLDER_ID + 1];
+        folder_id(folder->path, folder->n_path, id);
+        cJSON_AddStringToObject(row, "id", id);
+        json_add(row, "name", name_of(finding, folder));
+        cJSON_AddNumberToObject(row, "n", folder->n);
         json_append(list, row);
     }
     return list;

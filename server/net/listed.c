@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "server/net/asleep.h"
 #include "server/net/net_state.h"
 #include "server/net/rooms.h"
 
@@ -88,4 +89,11 @@ cJSON *net_listed_document(const struct net *net, size_t index, const struct net
     cJSON_AddBoolToObject(json, "is_mine", row->is_mine);
     cJSON_AddNumberToObject(json, "used_ms", (double)row->used_ms);
     return json;
+}
+
+const char *net_room_name(const struct net *net, const char *room_id)
+{
+    const struct net_room *room = rooms_find(net, room_id);
+    const struct asleep_room *asleep = room ? NULL : asleep_find(net, room_id);
+    return room ? room_name(room->room) : asleep ? asleep->facts.name : NULL;
 }

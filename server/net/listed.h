@@ -16,3 +16,5 @@ const char *net_listed_plan(const struct net *net, size_t index);
 bool net_listed_at(const struct net *net, size_t index, const struct identity *who, struct net_listed *row);
 /* room_document, of a sleeping room without members, with is_mine and used_ms. */
 NODISCARD cJSON *net_listed_document(const struct net *net, size_t index, const struct net_listed *row);
+/* The name that a room was given, also of one that sleeps; borrowed. "": none; NULL: there is no such room. */
+const char *net_room_name(const struct net *net, const char *room_id);

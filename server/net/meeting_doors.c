@@ -84,6 +84,7 @@ static void entered(void *context, struct room *room, void *connection)
         return;
     if (present.link[0] && present.user[0] && meeting_link_find((struct meeting *)meeting, present.link))
         meetings_came(context, meeting, present.user);
+    (void)net_meeting_find(context, meeting->id); /* looks at its plans: their words may be told */
     meeting_moves_tell(context, meeting, one, room, connection);
     /* a wall that was started anew begins at the address that it was given, whatever case is now; who waits outside
      * was away, perhaps, when the meeting came to a case that is open to them */

@@ -113,6 +113,22 @@ static const struct identity *identity_at(void *connection)
     return &visitor->identity;
 }
 
+/* The case that is behind the one of now: counted for everybody, named to those to whom it is open. */
+static void fill_next(const struct net *net, const struct meeting *meeting, void *connection,
+                      const struct room_present *present, struct message_meeting *told)
+{
+    struct problem problem;
+    enum wire_member_role role;
+    const struct meeting_case *next = meeting->ended_ms ? NULL : meeting_next(meeting, &problem);
+    if (!next)
+        return;
+    told->n_next = (int64_t)meeting_place(meeting, next) + 1;
+    if (!meeting_moves_may(net, meeting, next, identity_at(connection), present, &role))
+        return;
+    (void)snprintf(told->next_patient, sizeof told->next_patient, "%s", next->patient);
+    (void)snprintf(told->next_plan, sizeof told->next_plan, "%.160s", next->label);
+}
+
 void meeting_moves_tell(struct net *net, const struct meeting *meeting, const struct meeting_case *here,
                         struct room *room, void *connection)
 {
@@ -138,6 +154,7 @@ void meeting_moves_tell(struct net *net, const struct meeting *meeting, const st
         !meeting->ended_ms && !present.is_guest &&
         (present.presents || present.role == WIRE_MEMBER_ROLE_PRESENTER || present.role == WIRE_MEMBER_ROLE_PLANNER);
     told.opens = present.presents && here->opens && meetings_opened(net, meeting, here->id);
+    fill_next(net, meeting, connection, &present, &told);
     room_tell_meeting(room, connection, &told);
 }
 

@@ -110,6 +110,14 @@ static void read_zone(struct paper *paper)
     (void)snprintf(paper->zone, sizeof paper->zone, "%.20s", name ? name : "UTC");
 }
 
+/* With the name that the room had when it was decided, where it had one. */
+static cJSON *title_of(const struct paper *paper)
+{
+    const char *name = json_text(paper->record, "room_name");
+    return name && name[0] ? written_format("Record of a plan review \xc2\xb7 %.320s", name)
+                           : written("Record of a plan review");
+}
+
 cJSON *paper_of_record(const struct paper_source *source)
 {
     struct paper paper = { .json = cJSON_CreateObject(), .blocks = cJSON_CreateArray(), .source = source };
@@ -121,7 +129,7 @@ cJSON *paper_of_record(const struct paper_source *source)
     read_zone(&paper);
     cJSON_AddStringToObject(paper.json, "format", "beamroom-paper");
     cJSON_AddNumberToObject(paper.json, "version", 1);
-    cJSON_AddStringToObject(paper.json, "title", "Record of a plan review");
+    json_add(paper.json, "title", title_of(&paper));
     json_add(paper.json, "under",
              written_format("State of the decision, %s",
                             written_exact((double)source->time_ms, paper.offset_min, paper.zone, time)));

@@ -262,6 +262,12 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     assert.doesNotMatch(JSON.stringify(links), new RegExp(link.token));
     const told = await people.rae.message('meeting');
     assert.deepEqual([told.meeting, told.n, told.of, told.now, told.may_advance], [meeting, 1, 3, cases[0], false]);
+    assert.deepEqual([told.n_next, told.next_patient, told.next_plan], [2, '', ''], 'the next case is not open to her, and counted alone');
+    assert.doesNotMatch(JSON.stringify(told), new RegExp(plans[1]));
+    for (const who of ['pat', 'wall']) {
+      const next = await people[who].message('meeting');
+      assert.deepEqual([next.n_next, next.next_patient, next.next_plan], [2, 'PHANTOM', 'Phantom: modified Snyder head']);
+    }
   });
 
   test('the presenter has it go on: who follows goes along, who may not see the case waits without being told of whom it is', async () => {
@@ -326,7 +332,11 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     assert.equal((await tab.message('meeting')).opens, false, 'a second time');
     tab.cut();
     people.guest3 = await welcomed({}, seat.room, seatIn(seat));
-    assert.deepEqual((await people.rae3.message('meeting')).n_now, 3);
+    const last = await people.rae3.message('meeting');
+    assert.deepEqual([last.n_now, last.n_next, last.next_plan], [3, 0, ''], 'nothing is behind the last case');
+    await ok(`/rooms/${people.room3}`, { ...pat, 'Beamroom-Member': `${people.pat3.first.member} ${people.pat3.first.secret}` }, 'PATCH', {
+      name: 'Second look',
+    });
     people.wall3 = await welcomed({}, people.room2, { link: people.wallLink.token }).catch(() => null);
     assert.equal(people.wall3, null, 'the link leads to the case of now alone');
   });
@@ -376,6 +386,10 @@ describe('A meeting of three cases', { concurrency: false }, () => {
           [2, null, true],
           [3, 'accept', true],
         ],
+      );
+      assert.deepEqual(
+        minutes.cases.map(({ room_name }) => room_name),
+        [null, null, 'Second look'],
       );
       assert.ok(minutes.cases.every(({ spent_ms, visits }) => spent_ms > 0 && visits.length === 1));
       const of = (name) => minutes.people.find((person) => person.name === name);

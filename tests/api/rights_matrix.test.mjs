@@ -138,14 +138,15 @@ describe('The matrix of rights', { concurrency: false }, () => {
     folder = mkdtempSync(join(tmpdir(), 'beamroom-matrix-'));
     chmodSync(folder, 0o777);
     for (const which of ['granted', 'foreign']) {
-      mkdirSync(join(folder, which));
-      cpSync(join(demo, 'phantom'), join(folder, which, `smith-john-${which}`), { recursive: true });
-      plans[which] = idOf(join(folder, which, `smith-john-${which}`));
+      const at = join(folder, which, 'plans'); // folders of one name
+      mkdirSync(at, { recursive: true });
+      cpSync(join(demo, 'phantom'), join(at, `smith-john-${which}`), { recursive: true });
+      plans[which] = idOf(join(at, `smith-john-${which}`));
     }
     socketPath = join(folder, 'http.sock');
     const granted = ['observer', 'reviewer', 'presenter', 'planner'].map((role) => `${folder}/granted ${role} ${role}`);
     daemon = await startDaemon({
-      plans: [join(folder, 'granted'), join(folder, 'foreign')],
+      plans: [join(folder, 'granted/plans'), join(folder, 'foreign/plans')],
       args: [
         ...['--stub', '--sign-in', 'proxy', '--guest-links', '--listen', `unix:${socketPath}`, '--proxy-user', userInfo().username],
         ...['--public-name', 'beamroom.example'],
@@ -406,6 +407,27 @@ describe('The matrix of rights', { concurrency: false }, () => {
     const next = await found('admin', { text: 'snyder', limit: 1, cursor: first.next });
     assert.deepEqual([next.total, next.plans.length, next.next], [2, 1, null]);
     assert.notEqual(next.plans[0].id, first.plans[0].id);
+  });
+
+  test('folders of one name are told apart by who sees both; who sees one is not told that there is another', async () => {
+    const found = async (kind, body = {}) => (await ask(kind, '/api/v1/plans/search', 'POST', body)).json;
+    const [granted, foreign] = ['granted', 'foreign'].map((which) => idOf(join(folder, which, 'plans')));
+    const { folders } = await found('admin');
+    assert.deepEqual(
+      [...folders].sort((a, b) => (a.name < b.name ? -1 : 1)),
+      [
+        { id: foreign, name: 'foreign/plans', n: 1 },
+        { id: granted, name: 'granted/plans', n: 1 },
+      ],
+    );
+    assert.deepEqual((await found('planner')).folders, [{ id: granted, name: 'plans', n: 1 }]);
+    const ids = async (kind, of) => (await found(kind, { folder: of })).plans.map(({ id }) => id);
+    for (const of of [foreign, 'foreign/plans']) {
+      assert.deepEqual(await ids('admin', of), [plans.foreign]);
+      assert.deepEqual(await ids('planner', of), []);
+    }
+    assert.deepEqual((await ids('admin', 'plans')).sort(), [plans.foreign, plans.granted].sort(), 'a name that both have');
+    assert.deepEqual(await ids('admin', 'lans'), [], 'a part of a name is none');
   });
 
   test('rooms are made on plans by who may work with them', async () => {

@@ -14,7 +14,7 @@ const folders = Array.from({ length: nFolders }, (_, i) => join(root, `ward-${i 
 for (let i = 0; i < nPlans; i++) {
   const at = join(folders[i % nFolders], `case-${i}`);
   mkdirSync(at, { recursive: true });
-  const plan = { format: 'beamroom-plan', version: 1, name: `Head ${i}`, note: `Made up, series ${i % 97}`, images: [] };
+  const plan = { format: 'beamroom-plan', version: 1, name: `Head ${i}`, note: `Made up, series ${i % 97}`, images: [{ id: 'ct', path: 'ct.nii' }] };
   writeFileSync(join(at, 'plan.json'), JSON.stringify(plan));
 }
 const daemon = await startDaemon({ plans: folders, args: ['--stub'] });
@@ -31,8 +31,8 @@ try {
     return { ms: performance.now() - began, found };
   };
   await until(
-    () => search(''),
-    ({ found }) => found.n_all === nPlans,
+    () => search('head'),
+    ({ found }) => found.total === nPlans, // each was looked at
     300000,
   );
   for (let i = 0; i < nRooms; i++) {

@@ -345,6 +345,7 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
   });
 
   later('a wall goes along: the next patient on plain ground, then that case alone, also after a reload', async () => {
+    assert.equal(await wall.locator('.wall-next').count(), 0, 'nothing is behind the last case');
     const { room } = (await agenda()).cases[2];
     const walls = (await api(`/rooms/${room}/members`, 'pat')).json.members.filter(({ role }) => role === 'wall');
     assert.equal(walls.length, 1);
@@ -355,6 +356,8 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     assert.match(await (await words).jsonValue(), /Case 1 of 3.*First plan/);
     await card.waitFor({ state: 'detached' });
     await wall.locator('.wall-plan', { hasText: 'First plan' }).waitFor();
+    await wall.locator('.wall-next', { hasText: 'next: PHANTOM Second plan' }).waitFor();
+    await shoot(wall, 'case-wall');
     await wall.reload(); // it begins at its address, and is told where the meeting is
     await wall.locator('.wall-foot', { hasText: 'case 1 of 3' }).waitFor();
     await wall.context().close();

@@ -1,9 +1,13 @@
 // The page of a wall: what a room shows, at the wall's own pixels, on the screen of a meeting room.
 import { after, before, describe, it } from 'node:test';
 import assert from 'node:assert/strict';
-import { call, until } from '../api/daemon.mjs';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { call, renderersOf, startDaemon, until } from '../api/daemon.mjs';
+import { onDisk } from '../api/on_disk.mjs';
 import { axe } from './axe.mjs';
-import { full, later, missing, shoot, startWorld } from './browser.mjs';
+import { full, missing, shoot, startWorld } from './browser.mjs';
 
 const wallSize = { width: 1920, height: 1080 };
 const names = ['3-D', 'Axial', 'Sagittal', 'Coronal'];
@@ -70,10 +74,11 @@ async function wheel(page, view, steps = 1) {
 }
 
 describe('the page of a wall', { skip: missing && `${missing} is missing` }, () => {
-  let world, room, presenter, wall;
+  let world, data, room, presenter, wall;
   const patch = (scene) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', scene, { 'If-Match': '*' });
   before(async () => {
-    world = await startWorld();
+    data = mkdtempSync(join(tmpdir(), 'beamroom-wall-'));
+    world = await startWorld({ data });
     room = await world.newRoom();
     presenter = await world.newPage(`rooms/${room}`, { viewport: { width: 1440, height: 900 } });
     await full(presenter);
@@ -83,6 +88,7 @@ describe('the page of a wall', { skip: missing && `${missing} is missing` }, () 
   after(async () => {
     if (world) world.daemon.child.kill('SIGCONT');
     await world?.stop();
+    if (data) rmSync(data, { recursive: true, force: true });
   });
 
   it('shows four panes, each drawn at its own pixels, and nothing of it changes the presenter', async () => {
@@ -104,6 +110,38 @@ describe('the page of a wall', { skip: missing && `${missing} is missing` }, () 
     });
     assert.deepEqual(size, [width, height]);
     assert.deepEqual(await axe(wall), []);
+  });
+
+  it('loads few files: its modules are joined, as those of a room are', async () => {
+    const loaded = await wall.evaluate(() =>
+      performance
+        .getEntriesByType('resource')
+        .map(({ name }) => new URL(name).pathname)
+        .filter((path) => /\.(js|css)$/.test(path)),
+    );
+    const joined = loaded.filter((path) => /^\/page\/wall-[0-9A-Z]{8}\.(js|css)$/.test(path));
+    assert.deepEqual([...new Set(joined.map((path) => path.split('.').at(-1)))].sort(), ['css', 'js'], `${loaded}`);
+    assert.ok(new Set(loaded).size <= 12, `${loaded}`);
+    assert.deepEqual(
+      loaded.filter((path) => path.startsWith('/js/') && path.endsWith('.js') && !path.endsWith('worker.js')),
+      [],
+    );
+  });
+
+  it('is named in the foot as the room is: by its plan and its day, then by the name that it is given', async () => {
+    await wall.locator('.wall-foot', { hasText: /Phantom.*, \d+ \w+/ }).waitFor();
+    const at = `${world.daemon.url}/api/v1/rooms/${room}`;
+    assert.ok((await call(at, 'PATCH', { name: 'Second look' })).status < 300);
+    await wall.locator('.wall-foot .wall-shrinks', { hasText: 'Second look' }).waitFor();
+    await presenter.locator('.in-strip .chip-main[title^="Second look: "]').waitFor();
+    await presenter.waitForFunction(() => document.title.startsWith('Second look – '));
+    const long = 'Second look at both fields, with the dose of the first visit and of the second';
+    assert.ok((await call(at, 'PATCH', { name: long })).status < 300);
+    await wall.locator('.wall-foot .wall-shrinks', { hasText: long }).waitFor();
+    const right = await wall.evaluate(() => document.querySelector('.wall-foot b').getBoundingClientRect().right);
+    assert.ok(right <= wallSize.width, `a long name pushes nothing off the wall: ${right}`);
+    await shoot(wall, 'wall-long-name');
+    assert.ok((await call(at, 'PATCH', { name: null })).status < 300);
   });
 
   it('shows what the presenter sees, from the same side', async () => {
@@ -270,13 +308,68 @@ describe('the page of a wall', { skip: missing && `${missing} is missing` }, () 
     await drawn(wall);
   });
 
-  later('comes back by itself after its renderer was killed', async () => {
-    const { json } = await call(`${world.daemon.url}/api/v1/plans`);
-    assert.ok(json);
-    await call(`${world.daemon.url}/api/v1/plans/phantom/close`, 'POST', {});
-    await call(`${world.daemon.url}/api/v1/plans/phantom/open`, 'POST', {});
+  it('comes back by itself after its renderer was killed', async () => {
+    const renderers = () => renderersOf(world.daemon.child.pid);
+    const before = renderers();
+    const told = wall.evaluate(
+      () =>
+        new Promise((done) => {
+          const take = ({ detail }) => detail.type === 'renderer' && detail.state !== 'ready' && done(detail.state);
+          globalThis.wall.world.connection.addEventListener('message', take);
+        }),
+    );
+    for (const pid of before) process.kill(pid, 'SIGKILL');
+    assert.notEqual(await told, 'ready');
+    await wall.waitForFunction(() => globalThis.wall.room.renderer.value.state === 'ready');
+    assert.equal(
+      renderers().some((pid) => before.includes(pid)),
+      false,
+    );
+    await wheel(presenter, 2, 2); // what is drawn from now on is of the new one
     await drawn(wall);
     await live(wall, 'live');
+  });
+
+  it('goes on by itself after the daemon was killed and started again', async () => {
+    const host = new URL(world.daemon.url).host;
+    const { revision } = (await call(`${world.daemon.url}/api/v1/rooms/${room}`)).json;
+    await until(
+      () => onDisk(room, data),
+      (kept) => kept?.revision >= revision,
+    );
+    const ended = new Promise((done) => world.daemon.child.on('exit', done));
+    world.daemon.child.kill('SIGKILL');
+    await ended;
+    await live(wall, 'disconnected');
+    assert.match(await wall.evaluate(() => getComputedStyle(document.querySelector('.wall-pane canvas')).filter), /grayscale/);
+    world.daemon = await startDaemon({ args: ['--listen', host], data });
+    await live(wall, 'live');
+    await drawn(wall);
+    assert.deepEqual(await shown(wall), [1, 2, 3, 4]);
+    await full(presenter);
+  });
+
+  it('is ended from the roster by who presents, also where nobody signs in, and stays dark', async () => {
+    await presenter.locator('.in-strip .chip-main').click();
+    const row = presenter.locator('.room-members li', { hasText: 'wall' });
+    await row.getByRole('button', { name: /^End it: Wall/ }).click();
+    const sure = row.getByRole('button', { name: /^End it now: Wall/ });
+    await sure.waitFor();
+    assert.deepEqual(
+      (await axe(presenter)).filter((line) => !line.includes('.avatar')), // that of who is away is pale
+      [],
+    );
+    assert.equal(await wall.locator('.wall-said').count(), 0, 'pressed once, it is asked');
+    await shoot(presenter, 'roster-end-wall');
+    await sure.click();
+    await wall.locator('.wall-said', { hasText: 'This wall has ended' }).waitFor();
+    await row.waitFor({ state: 'detached' });
+    await presenter.keyboard.press('Escape');
+    const sides = await wall.evaluate(() => [...document.querySelectorAll('canvas')].map(({ width }) => width));
+    assert.ok(
+      sides.every((side) => side <= 16),
+      `no picture stays: ${sides}`,
+    );
   });
 
   it('names what it cannot show', async () => {

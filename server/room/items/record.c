@@ -137,6 +137,8 @@ cJSON *room_record(const struct room *room)
     cJSON_AddStringToObject(json, "format", "beamroom-record");
     cJSON_AddNumberToObject(json, "version", 1);
     cJSON_AddStringToObject(json, "room", room->id);
+    if (room->name[0])
+        cJSON_AddStringToObject(json, "room_name", room->name);
     cJSON_AddStringToObject(json, "plan", room->plan_id);
     cJSON_AddStringToObject(json, "plan_revision", room->files.revision);
     cJSON_AddNumberToObject(json, "revision", room->shared.revision);

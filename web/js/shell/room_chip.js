@@ -82,7 +82,7 @@ export function roomChip(world, place) {
   const { text, more, act } = words(room);
   const keep = (event) => event.stopPropagation(); // the arrow keys of the tool bar stay out of the chip
   return html`<span class="anchor room-chip in-${place}" role="group" aria-label=${say.room} data-standing=${room.following.standing.value} ?data-replay=${room.recording.replay.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
-    <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title=${say.whoIsHere} @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
+    <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title=${room.name.value ? `${room.name.value}: ${say.whoIsHere}` : say.whoIsHere} @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
       ${room.recording.running.value ? html`<b class="chip-recorded">${say.recorded}</b>` : nothing}
       ${partsOf('chip', world)}<span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.command ? keyMark(ui.keys.text(act.command)) : nothing}</button>` : nothing}

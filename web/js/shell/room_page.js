@@ -222,7 +222,7 @@ function reveal(host, ui) {
 }
 
 function describeTitle(room) {
-  document.title = [room.plan.value?.name ?? room.planId.value, 'Beamroom'].filter(Boolean).join(' – ');
+  document.title = [room.name.value, room.plan.value?.name ?? room.planId.value, 'Beamroom'].filter(Boolean).join(' – ');
 }
 
 /** The values at the crosshair, asked for when it has moved or the renderer is there again. */

@@ -4,7 +4,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { ofMember } from '../net/api.js';
-import { roomName } from '../parts/when.js';
+import { roomCalled } from '../room/room_called.js';
 import { maxName } from '../room/own_name.js';
 import { icon } from '../parts/icons.js';
 import { recordings } from '../features/recordings/recordings.js';
@@ -37,7 +37,20 @@ function buttonsFor(member, { following, control }) {
     ${isAsking ? html`<button aria-label=${say.refuseTo(member)} @click=${() => control.refuse(member.id)}>${say.refuse}</button>` : nothing}</span>`;
 }
 
-function row(member, room) {
+const isEnding = signal(''); // the wall that is to be ended, once this is pressed again
+
+/** Ends a wall: who presents does, or who may remove people; asked once. */
+function wallButton({ id, name }, { room, connection }) {
+  if (!room.control.may('control')) return nothing;
+  const isSure = isEnding.value === id;
+  return html`<span class="roster-buttons"><button class=${isSure ? 'bad' : ''} aria-label=${(isSure ? say.endWallSureOf : say.endWallOf)({ name })} title=${say.endWallIs} @click=${() => {
+    isEnding.value = isSure ? '' : id;
+    if (isSure) connection.send({ type: 'member.remove', member: id, reason: '' });
+  }}>${isSure ? say.endWallSure : say.endWall}</button></span>`;
+}
+
+function row(member, world) {
+  const { room } = world;
   const { control, following } = room;
   const lag = member.connected === false ? null : lags[member.lag];
   const isAsking = control.requested.value.includes(member.id);
@@ -47,7 +60,7 @@ function row(member, room) {
       ${isAsking ? html`<span class="roster-mark">${icon('people', 12)} ${say.requests}</span>` : nothing}
       ${lag ? html`<span class="roster-mark warn" title=${lag.about}>${icon('phase', 12)} ${lag.word}</span>` : nothing}
       ${member.tabs > 1 ? html`<span class="roster-mark dim" title=${say.tabsIs}>${icon('layers', 12)} ${say.tabs({ n: member.tabs })}</span>` : nothing}</span>
-    ${buttonsFor(member, room)}</li>`;
+    ${member.role === 'wall' ? wallButton(member, world) : buttonsFor(member, room)}</li>`;
 }
 
 const actions = ({ following, control, recording: { replay } }, watching) =>
@@ -121,30 +134,12 @@ function nameForm({ room, ui, ownName }) {
     <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>${say.save}</button></form>`;
 }
 
-const begun = new WeakMap(); // by room: a signal of when it was made
 const isNaming = signal(false);
-
-/** The room's name, given or of its plan and its first day. */
-function nameOf({ room, api }) {
-  const plan = room.plan.value;
-  if (!begun.has(room)) {
-    begun.set(room, signal(''));
-    api.room(room.id).then(
-      ({ created_at }) => {
-        begun.get(room).value = created_at;
-      },
-      () => {},
-    );
-  }
-  const title = plan?.treatmentPlans[plan.shownPlan]?.label || plan?.name || room.planId.value;
-  const created_at = begun.get(room).value;
-  return room.name.value || (created_at ? roomName({ name: '', created_at }, title) : title);
-}
 
 /** The name of the room; who has the right changes it in place. */
 function roomTitle(world) {
   const { room, ui, api } = world;
-  const name = nameOf(world);
+  const name = roomCalled(world);
   if (!room.control.may('control')) return html`<p class="room-title"><b>${name}</b></p>`;
   const end = (event) => {
     const chip = event.target.closest('.room-members');
@@ -176,7 +171,8 @@ function roomTitle(world) {
 }
 
 /** Contents of the room chip's popover. @param {object} world {room, ui, ownName, api, watching} */
-export function roster({ room, ui, ownName, api, watching }) {
+export function roster(world) {
+  const { room, ui, ownName, api, watching } = world;
   const act = (event, what) => {
     const main = event.target.closest('.room-chip').querySelector('.chip-main');
     ui.popover.value = '';
@@ -187,7 +183,7 @@ export function roster({ room, ui, ownName, api, watching }) {
   return html`${roomTitle({ room, ui, api })}<ul>${repeat(
     room.members.value,
     ({ id }) => id,
-    (member) => row(member, room),
+    (member) => row(member, world),
   )}</ul>
     ${locked ? html`<p class="dim roster-locked">${say.lockedNote}</p>` : nothing}
     <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>

@@ -7,6 +7,7 @@ import { fitBar } from '../features/fits/later.js';
 import { nameWords } from '../features/patient/patient_card.js';
 import { approvalOf, dateWords, identityOf, shownPatient, shownTreatmentPlan } from '../room/identity.js';
 import { worst } from '../room/fidelity.js';
+import { roomCalled } from '../room/room_called.js';
 import { missingOf } from './missing.js';
 import { initials } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
@@ -106,12 +107,20 @@ export function wallBars(world) {
 
 const layoutWords = { four: say.fourPanes, 'worked-in': say.onePane, presenter: say.asPresenter };
 
-export function wallFoot({ room, meetingTold }) {
+/** Whom the meeting goes on to, masked; a case that is not open to this wall is counted alone. */
+function nextWords({ n_next, next_patient, next_plan }) {
+  const who = next_patient === say.phantom ? [next_patient, next_plan].join(' ') : next_patient || next_plan;
+  return who ? say.next({ who }) : say.nextCase({ n: n_next });
+}
+
+export function wallFoot(world) {
+  const { room, meetingTold } = world;
   const meeting = meetingTold.value;
   const told = room.wall.value;
   const layout = layoutWords[told?.layout] ?? '';
   const view = room.view(viewOf(told?.active));
   const presenter = room.following.presenter.value;
   const works = view && presenter ? say.worksIn({ layout, name: presenter.name, view: view.name }) : layout;
-  return html`<span>${meeting?.n ? say.meeting(meeting) : say.room({ room: room.id })}</span><span>${works}</span><span class="grow"></span><span>${say.radiological}</span><b>${say.research}</b>`;
+  const where = [meeting?.n ? say.meeting(meeting) : roomCalled(world), meeting?.n ? room.name.value : ''].filter(Boolean);
+  return html`${where.map((words) => html`<span class="wall-shrinks">${words}</span>`)}${meeting?.n_next ? html`<span class="wall-next">${nextWords(meeting)}</span>` : nothing}<span class="wall-shrinks">${works}</span><span class="grow"></span><span>${say.radiological}</span><b>${say.research}</b>`;
 }

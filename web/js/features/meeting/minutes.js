@@ -34,7 +34,7 @@ const caseRow = (one) => html`<tr><td>${one.n}</td><td>${
     ? html`<b>${one.patient ?? say.noIdentity}</b><br>${one.label ?? ''}${one.label ? html` · ${approvalOf(one)[0]}` : nothing}`
     : html`<i>${say.closed}</i>`
 }</td><td>${one.visits.map(span).join(', ') || '–'}</td><td>${one.began_ms ? minutesOf(one.spent_ms) : '–'}</td><td>${one.is_open ? decided(one) : '–'}</td>
-  <td class="no-print">${one.room ? html`<a href=${`/rooms/${one.room}`}>${say.toRoom}</a>` : nothing}</td></tr>`;
+  <td class="no-print">${one.room ? html`<a href=${`/rooms/${one.room}`}>${one.room_name || say.toRoom}</a>` : nothing}</td></tr>`;
 
 const personRow = ({ name, user, role, is_guest, cases }) =>
   html`<tr><td><b>${name}</b>${user && user !== name ? html` <span class="dim">${user}</span>` : nothing}${

@@ -64,7 +64,7 @@ function head(record) {
   return html`<h1>${say.title}</h1><table class="facts"><tbody>
     ${row(say.plan, code(record.plan))}
     ${row(say.planRevision, html`${code(record.plan_revision)}<br>${say.hashOver({ n: record.n_files })}`)}
-    ${row(say.room, say.roomIs({ room: code(record.room), time: time(record.created_ms), revision: record.revision }))}
+    ${row(say.room, say.roomIs({ room: html`${record.room_name ? html`<b>${record.room_name}</b>, ` : nothing}${code(record.room)}`, time: time(record.created_ms), revision: record.revision }))}
     ${record.meeting ? row(say.meeting, say.meetingIs({ ...record.meeting, meeting: code(record.meeting.id) })) : nothing}
     ${row(say.audit, say.auditIs({ row: audit.rows, head: code(audit.head) }))}
     ${row(say.program, say.programIs({ server: record.server, version: record.version }))}</tbody></table>`;
