@@ -3,9 +3,9 @@
 import assert from 'node:assert/strict';
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { basename, dirname, join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { call, openPlan } from '../api/daemon.mjs';
+import { call, demo, openPlan } from '../api/daemon.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
 import { full, isDue, later, missing, once, shoot, startWorld } from './browser.mjs';
@@ -111,8 +111,20 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     assert.deepEqual(await page.locator('.no-plans code').allTextContents(), ['letters', 'photos']);
     assert.equal(await page.locator('[data-plan]').count(), 0);
     await isClean(page, 'folders that are no plans');
-    await page.locator('[data-place="folder plans"]').click();
-    await page.locator('.list-head', { hasText: 'plans: 2 of 2' }).waitFor(); // both folders are called that
+    const [own, other] = [`${basename(folder)}/plans`, `${basename(dirname(demo))}/plans`]; // both folders are called "plans"
+    const [ownPlace, otherPlace] = [own, other].map((name) => page.locator(`[data-place="folder ${name}"]`));
+    await otherPlace.click();
+    await page.locator('.list-head', { hasText: `${other}: 1 of 1` }).waitFor();
+    await ownPlace.click();
+    await page.locator('.list-head', { hasText: `${own}: 1 of 1` }).waitFor();
+    assert.deepEqual(await page.locator('[data-plan]').evaluateAll((rows) => rows.map(({ dataset }) => dataset.plan)), ['broken']);
+    await page.reload(); // the address keeps the place
+    await page.locator('.list-head', { hasText: `${own}: 1 of 1` }).waitFor();
+    assert.equal(await ownPlace.getAttribute('aria-current'), 'page');
+    await isClean(page, 'a folder');
+    await page.goto(`${world.daemon.url}/?place=folder&folder=0123456789abcdef`);
+    await page.locator('[data-place="today"][aria-current="page"]').waitFor();
+    assert.equal(new URL(page.url()).search, '', 'a folder that is not there gives way to today');
     await page.context().close();
   });
 
@@ -161,10 +173,33 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await meeting.waitFor();
     const { meetings } = (await call(`${world.daemon.url}/api/v1/meetings`)).json;
     const at = `${world.daemon.url}/api/v1/meetings/${meetings[0].id}`;
+    await page.getByLabel('Find a plan').fill('no such plan'); // what the list shows does not matter for a new case
+    await page.locator('.empty', { hasText: 'No plan fits' }).waitFor();
     await meeting.getByRole('button', { name: 'Add a case' }).click();
-    await meeting.getByLabel('Plan of the case').selectOption('phantom');
+    const choice = meeting.getByLabel('Plan of the case');
+    await choice.locator('option[value="phantom"]').waitFor({ state: 'attached' });
+    await meeting.getByLabel('Find its plan').fill('broken');
+    await meeting.locator('.note', { hasText: 'No plan fits' }).waitFor(); // it cannot be opened
+    assert.equal(await choice.locator('option').count(), 0);
+    await meeting.getByLabel('Find its plan').fill('PHANT');
+    await choice.locator('option[value="phantom"]').waitFor({ state: 'attached' });
+    await isClean(page, 'choosing a case');
+    await choice.selectOption('phantom');
     await meeting.getByRole('button', { name: 'Add', exact: true }).click();
     await meeting.locator('.case').waitFor();
+    await page.locator('.banner .search input').fill('');
+    await meeting.getByRole('button', { name: 'Invite' }).click();
+    await meeting.getByLabel('As').selectOption('wall');
+    await meeting.getByRole('button', { name: 'Make link' }).click();
+    const link = await meeting.getByLabel('The link, told once').inputValue();
+    assert.match(link, new RegExp(`^${world.daemon.url}/meetings/${meetings[0].id}#link=[0-9a-f]{32}$`));
+    await meeting.locator('.case-links li', { hasText: 'wall' }).waitFor();
+    await isClean(page, 'links of a meeting');
+    await shoot(page, 'start-meeting-links');
+    await meeting.getByRole('button', { name: 'End it: link of wall' }).click();
+    await meeting.locator('.case-links li').waitFor({ state: 'detached' });
+    assert.deepEqual((await call(`${at}/links`)).json.links, []);
+    assert.equal(await meeting.getByRole('link', { name: 'Minutes' }).count(), 0, 'it has not begun');
     const { id: room } = (await call(`${world.daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json;
     const added = await call(`${at}/cases`, 'POST', { plan: 'phantom', room });
     assert.equal(added.status, 200, added.text);
@@ -201,7 +236,22 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.goto(world.daemon.url);
     await page.locator('.case[data-state="now"]').waitFor();
     await shoot(page, 'start-meeting');
+    assert.equal(
+      await page.getByRole('link', { name: 'Minutes of Tumour board, Friday' }).getAttribute('href'),
+      `/meetings/${meetings[0].id}/minutes`,
+    );
     assert.equal((await call(`${at}/end`, 'POST', {})).status, 200);
+    const coming = (await call(`${world.daemon.url}/api/v1/meetings`, 'POST', { name: 'Next week', starts_ms: Date.now() + 7 * 86400000 }))
+      .json.id;
+    await page.locator('.other-meetings summary').click();
+    const row = page.locator(`[data-meeting-row="${coming}"]`);
+    await row.getByRole('button', { name: 'Show the agenda of Next week' }).click();
+    await page.locator(`[data-meeting="${coming}"]`).getByRole('button', { name: 'Add a case' }).waitFor();
+    await isClean(page, 'a meeting of another day');
+    await shoot(page, 'start-other-meetings');
+    await row.getByRole('button', { name: 'Fold the agenda of Next week' }).click();
+    await page.locator(`[data-meeting="${coming}"]`).waitFor({ state: 'detached' });
+    assert.equal((await call(`${world.daemon.url}/api/v1/meetings/${coming}`, 'DELETE')).status, 204);
     assert.equal((await call(at, 'DELETE')).status, 204);
     await call(`${world.daemon.url}/api/v1/rooms/${running.cases[0].room}`, 'DELETE');
     await call(`${world.daemon.url}/api/v1/rooms/${room}`, 'DELETE');

@@ -1,6 +1,6 @@
 // State of the start page: the plans and rooms, the jobs that load plans, the report of the chosen plan.
 import { present } from './after_room.js';
-import { batch, signal } from '../../lib/signals-core.js';
+import { batch, computed, signal } from '../../lib/signals-core.js';
 import { Problem } from '../net/api.js';
 import { readReport } from './plan.js';
 import { say } from './words.js';
@@ -25,14 +25,15 @@ export class PlansState {
   #nLists = 0;
   #seen;
 
-  /** @param {object} world {api, clock, enter: (room: string, plan: string) => void, seen: is told of each new list of plans} */
-  constructor({ api, clock, enter, seen = () => {} }) {
+  /** @param {object} world {api, clock, enter: (room: string, plan: string) => void, seen: is told of each new list of plans, place: the one to begin with} */
+  constructor({ api, clock, enter, seen = () => {}, place = { kind: 'today', id: '' } }) {
     this.#seen = seen;
     this.#api = api;
     this.#clock = clock;
     this.#enter = enter;
     this.plans = signal(null); // those of the page that is shown; null until the first answer
     this.found = signal({ total: 0, of: 0, next: null, folders: [], n_all: 0, n_uploads: 0, n_no_plans: 0 });
+    this.folder = computed(() => this.found.value.folders.find(({ id }) => id === this.place.value.id)); // the one that is shown
     this.rooms = signal([]);
     this.version = signal(null);
     this.error = signal('');
@@ -41,7 +42,7 @@ export class PlansState {
     this.notice = signal(''); // what the server as a whole cannot do at the moment
     this.chosen = signal('');
     this.report = signal(null); // {plan, loadMs, lines, dropped} of the chosen plan; null without one
-    this.place = signal({ kind: 'today', name: '' }); // today | all | folder | uploads | no-plans; name: the folder's
+    this.place = signal(place); // today | all | folder | uploads | no-plans; id: the folder's
     this.sort = signal('used'); // used | name | approved
     this.search = signal('');
     this.cursors = signal(['']); // of the pages up to the one that is shown
@@ -127,7 +128,7 @@ export class PlansState {
     await this.#list();
     if (this.#isStopped) return;
     if (!this.plans.value?.some((plan) => plan.id === id)) {
-      this.show({ place: { kind: 'uploads', name: '' }, search: '' });
+      this.show({ place: { kind: 'uploads', id: '' }, search: '' });
       await this.#list();
     }
     this.choose(id);
@@ -175,8 +176,8 @@ export class PlansState {
   }
 
   #question() {
-    const { kind, name } = this.place.value;
-    const folder = { folder: name, uploads: 'uploads' }[kind] ?? '';
+    const { kind, id } = this.place.value;
+    const folder = { folder: id, uploads: 'uploads' }[kind] ?? '';
     return {
       text: this.search.value.trim(),
       folder,

@@ -2,7 +2,7 @@
 import { signal } from '../../../lib/signals-core.js';
 import { later } from '../../parts/lazy.js';
 
-const code = later(() => import('./later.js'), 'js/features/meeting/meeting.css');
+const code = later(() => import('./later.js'), 'js/features/meeting/meeting.css', 'js/features/meeting/invite.css');
 
 /** @param {object} world {room, ui, api, clock, connection, enter} @returns {() => void} stops */
 function start(world) {

@@ -1,7 +1,9 @@
 // The meetings of today on the start page: each with its agenda, which its people put in order, and the way into it.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
+import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { later } from '../../parts/lazy.js';
 import { when } from '../../parts/when.js';
 import { say } from './later_words.js';
 import { titleOf } from './plan_row.js';
@@ -28,16 +30,20 @@ function meetingForm(meetings, { id = '', name = '', starts_ms = null } = {}) {
     }}>${say.cancel}</button></div><p class="note">${say.meetingNameIsSeen}</p></form>`;
 }
 
-function caseForm(meetings, { id, cases }, state) {
+/** A plan of all that this person may see, found by what is typed here. */
+function caseForm(meetings, { id, cases }) {
   const taken = new Set(cases.map(({ plan }) => plan));
-  const plans = (state.plans.value ?? []).filter((plan) => !taken.has(plan.id) && plan.state !== 'unreadable');
+  const { list, total } = meetings.plans.value;
+  const plans = (list ?? []).filter((plan) => !taken.has(plan.id) && plan.state !== 'unreadable');
   const add = (event) => {
     event.preventDefault();
     const plan = new FormData(event.target).get('plan');
     if (plan) void meetings.add(id, plan);
   };
-  return html`<form class="case-form" @submit=${add} @keydown=${closesByEscape(meetings)}><label>${say.planOfCase}<select name="plan">${plans.map((plan) => html`<option value=${plan.id}>${[plan.patient, titleOf(plan), plan.id].filter(Boolean).join(' · ')}</option>`)}</select></label>
-    <button class="primary" ?disabled=${!plans.length}>${say.addIt}</button><p class="note">${say.findOthers}</p></form>`;
+  const found = !list ? say.looking : plans.length ? say.plansFound({ n: number(plans.length), total: number(total) }) : say.noneFits;
+  return html`<form class="case-form" @submit=${add} @keydown=${closesByEscape(meetings)}><label>${say.findCase}<input type="search" name="text" autocomplete="off" @input=${(event) => meetings.find(event.target.value, true)}></label>
+    <label>${say.planOfCase}<select name="plan">${plans.map((plan) => html`<option value=${plan.id}>${[plan.patient, titleOf(plan), plan.id].filter(Boolean).join(' · ')}</option>`)}</select></label>
+    <button class="primary" ?disabled=${!plans.length}>${say.addIt}</button><p class="note" role="status">${found}</p></form>`;
 }
 
 function stateOf(one) {
@@ -95,35 +101,79 @@ const arrow = (isUp) => html`<span class=${isUp ? 'turned' : ''}>${icon('chevron
 
 const states = { running: say.runs, over: say.isOver };
 
-function meetingCard(meetings, meeting, state) {
+/** What can be done with a meeting that is not over, by whom it lets. */
+function acts({ state, may }, form, open) {
+  if (!may.edit || state === 'over') return nothing;
+  return html`<div class="meeting-acts"><button aria-expanded=${form === 'case'} @click=${open('case')}>${icon('plus', 12)}<span>${say.addCase}</span></button>
+    <button class="ghost" aria-expanded=${form === 'links'} @click=${open('links')}>${say.invite}</button>
+    <button class="ghost" aria-expanded=${form === 'meeting'} @click=${open('meeting')}>${say.nameAndTime}</button><span class="note">${say.nextTakesAlong}</span></div>`;
+}
+
+/** Of a meeting that has begun. */
+const minutesLink = ({ id, name, state }) =>
+  state === 'planned'
+    ? nothing
+    : html`<a class="button ghost" href=${`/meetings/${id}/minutes`} aria-label=${say.minutesOf({ name })}>${say.minutes}</a>`;
+
+/** Meetings of other days: their minutes, and the agendas of those that are still to come. */
+function otherMeetings(meetings) {
+  const others = meetings.others.value;
+  if (!others.length) return nothing;
+  const facts = ({ starts_ms, ended_ms, n_cases, state }) =>
+    [ended_ms ? when(ended_ms) : starts_ms && when(starts_ms), say.nCases({ n: n_cases }), states[state]].filter(Boolean).join(' · ');
+  const row = (meeting) => {
+    const { id, name } = meeting;
+    const isOpen = meetings.opened.value.includes(id);
+    const word = (isOpen ? say.foldMeeting : say.showMeeting)({ name });
+    return html`<li data-meeting-row=${id}><b>${name}</b><span class="dim">${facts(meeting)}</span>
+      <button class="ghost" aria-expanded=${isOpen} aria-label=${word} @click=${() => meetings.fold(id)}>${isOpen ? say.fold : say.agenda}</button>${minutesLink(meeting)}</li>`;
+  };
+  return html`<details class="other-meetings"><summary>${say.otherMeetings} <span class="dim">${number(others.length)}</span></summary><ul>${repeat(
+    others,
+    ({ id }) => id,
+    row,
+  )}</ul></details>`;
+}
+
+async function beginLinks(meetings, id) {
+  await invite.load();
+  invite.loaded.peek()?.beginInvite((method, path, body) => meetings.call(id, method, path, body));
+}
+
+const invite = later(() => import('../meeting/invite.js'), 'js/features/meeting/invite.css');
+
+/** Links of this meeting, as its card in a room has them. */
+function linksForm(meetings, { id }, hasGuests) {
+  const call = (method, path, body) => meetings.call(id, method, path, body);
+  return html`<section class="case-form case-invite" aria-label=${say.invite} @keydown=${closesByEscape(meetings)}>${invite.draw(({ inviteForm }) => inviteForm(call, hasGuests))}</section>`;
+}
+
+function meetingCard(meetings, meeting, { hasGuests }) {
   const { id, name, cases, may, n_in, starts_ms } = meeting;
   const form = meetings.form.value?.meeting === id ? meetings.form.value.kind : '';
   const open = (kind) => () => {
     meetings.form.value = form === kind ? null : { meeting: id, kind };
+    if (form !== kind && kind === 'case') meetings.find('');
+    if (form !== kind && kind === 'links') void beginLinks(meetings, id);
   };
   const about = [starts_ms && when(starts_ms), states[meeting.state], n_in > 0 && say.nIn({ n: n_in })].filter(Boolean).join(' · ');
   const canGoIn = meeting.state !== 'over' && cases.length > 0 && (meeting.state === 'running' || may.advance);
   return html`<section class="meeting" data-meeting=${id} aria-labelledby=${`meeting-${id}`}><div class="list-head"><h2 id=${`meeting-${id}`}>${name}</h2><span class="dim">${about}</span><span class="grow"></span>
-      ${meeting.state === 'planned' ? nothing : html`<a class="button ghost" href=${`/meetings/${id}/minutes`}>${say.minutes}</a>`}
+      ${minutesLink(meeting)}
       ${canGoIn ? html`<button class="primary" @click=${() => meetings.goIn(id)}>${meeting.state === 'running' ? say.goIn : say.begin}</button>` : nothing}</div>
     ${cases.length ? html`<ol class="agenda">${cases.map((one, index) => caseRow(meetings, meeting, one, index))}</ol>` : html`<p class="empty">${say.noCases}</p>`}
-    ${
-      may.edit
-        ? html`<div class="meeting-acts"><button aria-expanded=${form === 'case'} @click=${open('case')}>${icon('plus', 12)}<span>${say.addCase}</span></button>
-      <button class="ghost" aria-expanded=${form === 'meeting'} @click=${open('meeting')}>${say.nameAndTime}</button><span class="note">${say.nextTakesAlong}</span></div>`
-        : nothing
-    }
-    ${form === 'case' ? caseForm(meetings, meeting, state) : form === 'meeting' ? meetingForm(meetings, meeting) : nothing}</section>`;
+    ${acts(meeting, form, open)}
+    ${form === 'case' ? caseForm(meetings, meeting) : form === 'meeting' ? meetingForm(meetings, meeting) : form === 'links' ? linksForm(meetings, meeting, hasGuests) : nothing}</section>`;
 }
 
-/** @param {import('./meetings.js').MeetingsState} meetings @param {object} state the plans, for new cases */
-export function meetingsToday(meetings, state) {
-  const shown = meetings.today.value.map(({ id }) => meetings.agendas.value[id]).filter(Boolean);
+/** @param {import('./meetings.js').MeetingsState} meetings @param {{hasGuests: boolean}} server hasGuests: it lets in who has not signed in */
+export function meetingsToday(meetings, server) {
+  const shown = meetings.shown.value.map(({ id }) => meetings.agendas.value[id]).filter(Boolean);
   const isNew = meetings.form.value?.meeting === '';
   return html`<div class="meetings">${repeat(
     shown,
     ({ id }) => id,
-    (meeting) => meetingCard(meetings, meeting, state),
+    (meeting) => meetingCard(meetings, meeting, server),
   )}
     ${meetings.error.value ? html`<p class="err" role="alert">${icon('error')} ${meetings.error.value}</p>` : nothing}<p class="as-status" role="status">${meetings.said.value}</p>
     ${
@@ -132,5 +182,5 @@ export function meetingsToday(meetings, state) {
         : html`<button class="ghost new-meeting" @click=${() => {
             meetings.form.value = { meeting: '', kind: 'meeting' };
           }}>${icon('plus', 12)}<span>${say.newMeeting}</span></button>`
-    }</div>`;
+    }${otherMeetings(meetings)}</div>`;
 }

@@ -4,7 +4,9 @@ import { say } from './later_words.js';
 
 const listMs = 5000;
 const dayMs = 86400000;
-const most = 6; // meetings whose agendas are shown
+const most = 6; // meetings of today whose agendas are shown
+const mostFound = 50; // plans to choose from for a new case
+const typingMs = 120; // after the last key, before the server is asked
 
 const dayOf = (ms) => new Date(ms).setHours(0, 0, 0, 0);
 
@@ -15,6 +17,9 @@ export function isOfToday({ state, starts_ms, ended_ms }, now = Date.now()) {
   return starts_ms === null || (starts_ms >= dayOf(now) && starts_ms < dayOf(now) + dayMs);
 }
 
+/** The newest first: those to come, then those that are over. */
+const newest = (a, b) => (b.ended_ms ?? b.starts_ms ?? 0) - (a.ended_ms ?? a.starts_ms ?? 0);
+
 const order = (a, b) => (a.state === 'over') - (b.state === 'over') || (a.starts_ms ?? Infinity) - (b.starts_ms ?? Infinity);
 
 export class MeetingsState {
@@ -22,6 +27,8 @@ export class MeetingsState {
   #clock;
   #enter;
   #timer = 0;
+  #typing = 0;
+  #nFinds = 0;
   #isStopped = false;
   #n = 0;
 
@@ -32,9 +39,19 @@ export class MeetingsState {
     this.#enter = enter;
     this.all = signal([]);
     this.today = computed(() => this.all.value.filter((meeting) => isOfToday(meeting)).sort(order));
+    this.opened = signal([]); // ids of others whose agendas are shown too
+    this.shown = computed(() => [
+      ...this.today.value.slice(0, most),
+      ...this.others.value.filter(({ id }) => this.opened.value.includes(id)),
+    ]);
+    this.others = computed(() => {
+      const ofToday = this.today.value.slice(0, most);
+      return this.all.value.filter((meeting) => !ofToday.includes(meeting)).sort(newest);
+    });
     this.agendas = signal({}); // by meeting, as GET gives it
     this.error = signal(''); // of what was asked for last
-    this.form = signal(null); // {meeting: id, '' of a new one; kind: 'meeting' | 'case'} while one is open
+    this.form = signal(null); // {meeting: id, '' of a new one; kind: 'meeting' | 'case' | 'links'} while one is open
+    this.plans = signal({ list: null, total: 0 }); // to choose a new case from, of all that this person may see; list null: not asked yet
     this.dragged = signal(''); // the case that is being dragged
     this.said = signal(''); // for readers of the screen: where a case stands now
   }
@@ -46,6 +63,37 @@ export class MeetingsState {
   stop() {
     this.#isStopped = true;
     this.#clock.clearTimeout(this.#timer);
+    this.#clock.clearTimeout(this.#typing);
+  }
+
+  /** Shows the agenda of a meeting of another day, or no longer. */
+  fold(id) {
+    const isOpen = this.opened.value.includes(id);
+    this.opened.value = isOpen ? this.opened.value.filter((other) => other !== id) : [...this.opened.value, id];
+    if (!isOpen) void this.#list();
+  }
+
+  /** What a meeting is asked, as its links are. */
+  call(id, method, path, body) {
+    return this.#api.call(method, `meetings/${id}${path}`, { body });
+  }
+
+  /** Looks for plans for a new case, whatever the list of plans shows. */
+  find(text, isTyped = false) {
+    this.#clock.clearTimeout(this.#typing);
+    this.#typing = this.#clock.setTimeout(() => void this.#find(text.trim()), isTyped ? typingMs : 0);
+  }
+
+  async #find(text) {
+    const n = ++this.#nFinds;
+    try {
+      const { plans, total } = await this.#api.call('POST', 'plans/search', {
+        body: { text, kind: 'plan', sort: 'used', limit: mostFound },
+      });
+      if (n === this.#nFinds && !this.#isStopped) this.plans.value = { list: plans, total };
+    } catch (error) {
+      if (n === this.#nFinds) this.error.value = error.message;
+    }
   }
 
   /** Makes a meeting, or gives it another name and time. @param {string} id '' of a new one @param {{name: string, starts_ms: number|null}} facts */
@@ -126,10 +174,11 @@ export class MeetingsState {
     const n = this.#n;
     try {
       const { meetings } = await this.#api.call('GET', 'meetings');
-      const shown = meetings
+      const ofToday = meetings
         .filter((meeting) => isOfToday(meeting))
         .sort(order)
         .slice(0, most);
+      const shown = [...ofToday, ...meetings.filter((meeting) => !ofToday.includes(meeting) && this.opened.peek().includes(meeting.id))];
       const agendas = await Promise.all(shown.map(({ id }) => this.#api.call('GET', `meetings/${id}`).catch(() => null)));
       if (n === this.#n && !this.#isStopped)
         batch(() => {

@@ -20,8 +20,8 @@ const orders = [
 function foundWords(state) {
   if (state.plans.value === null) return say.looking;
   const { total, of } = state.found.value;
-  const [text, { kind, name }] = [state.search.value.trim(), state.place.value];
-  const place = { folder: name, uploads: say.uploads }[kind] ?? '';
+  const [text, { kind }] = [state.search.value.trim(), state.place.value];
+  const place = { folder: state.folder.value?.name, uploads: say.uploads }[kind] ?? '';
   const where = text ? (place ? say.textIn({ text, place }) : say.text({ text })) : place ? say.place({ place }) : '';
   return `${where}${say.nOf({ total: number(total), of: number(of) })}`;
 }

@@ -15,7 +15,7 @@ import { meetingsToday } from './meeting_list.js';
 import { MeetingsState } from './meetings.js';
 import { later } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';
-import { places } from './places.js';
+import { addressOfPlace, placeOfAddress, places } from './places.js';
 import { planList } from './plan_list.js';
 import { refusalOf } from './plan_row.js';
 import { reportLines } from '../../parts/report.js';
@@ -28,7 +28,7 @@ export { Thumbnails } from './thumbnails.js';
 
 /** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, session, thumbnails} @returns {() => void} leaves the page */
 export function startPage(host, world) {
-  const state = new PlansState({ ...world, seen: (plans) => void world.thumbnails.update(plans) });
+  const state = new PlansState({ ...world, place: placeOfAddress(location.search), seen: (plans) => void world.thumbnails.update(plans) });
   const uploads = new UploadsState({
     ...world,
     arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)),
@@ -39,6 +39,7 @@ export function startPage(host, world) {
   const unkey = listenForSearch(host);
   const unwatch = watchDialog(host, state);
   const unlisten = listenDrops(uploads, (file) => openDroppedSnapshot(world.api, file, world.enter));
+  const unaddress = effect(() => keepInAddress(state));
   let newest = 0;
   const unscroll = effect(() => {
     // scrolls to a newly chosen upload, which asks for its name
@@ -61,6 +62,7 @@ export function startPage(host, world) {
     unlisten();
     unwatch();
     unscroll();
+    unaddress();
     unmount();
   };
 }
@@ -78,6 +80,14 @@ function lookButton() {
   return html`<span class="anchor" @keydown=${onKey}><button class="ghost" aria-expanded=${isOpen} aria-label=${say.look} title=${say.look} @click=${() => {
     isLookOpen.value = !isOpen;
   }}>${icon('window')}</button>${isOpen ? html`<div class="popover look-card">${look.draw((loaded) => loaded.lookChoice())}</div>` : nothing}</span>`;
+}
+
+/** The place stands in the address, for a reload and for others; a folder that is not there, or no longer for this person, gives way to today. */
+function keepInAddress(state) {
+  const [{ kind, id }, { n_all }, folder] = [state.place.value, state.found.value, state.folder.value];
+  if (kind === 'folder' && n_all > 0 && !folder) queueMicrotask(() => state.show({ place: { kind: 'today', id: '' } }));
+  else if (location.pathname === '/' && location.search !== new URL(addressOfPlace({ kind, id }), location.href).search)
+    history.replaceState(history.state, '', addressOfPlace({ kind, id }));
 }
 
 /** "/" anywhere but in a text goes to the search. */
@@ -102,7 +112,7 @@ const page = (state, uploads, meetings, world) => {
     <label class="search" data-keys="/">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(event) => state.show({ search: event.target.value })}><kbd aria-hidden="true">/</kbd></label><span class="grow"></span>
     ${join(state, enter)}${lookButton()}${session.value?.who() ?? nameButton(state, ownName)}</header>
   ${places(state, meetings)}
-  <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${isToday ? meetingsToday(meetings, state) : nothing}${planList(state, uploads, world)}${isToday ? roomsList(state, ownName) : nothing}</main>
+  <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${isToday ? meetingsToday(meetings, { hasGuests: Boolean(session.value?.facts.value.guest_links) }) : nothing}${planList(state, uploads, world)}${isToday ? roomsList(state, ownName) : nothing}</main>
   <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div>
     ${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">${say.research}</b></footer>

@@ -77,10 +77,10 @@ test('the server is asked for one page of the place, text and order that are sho
   assert.equal(state.plans.value[0].id, 'new');
   state.turn(true);
   assert.equal(asked.at(-1).cursor, 'head');
-  state.show({ place: { kind: 'folder', name: 'neuro' } });
+  state.show({ place: { kind: 'folder', id: '0123456789abcdef' } });
   await later();
-  assert.deepEqual([asked.at(-1).folder, asked.at(-1).cursor], ['neuro', ''], 'another place begins at its first page');
-  state.show({ place: { kind: 'no-plans', name: '' } });
+  assert.deepEqual([asked.at(-1).folder, asked.at(-1).cursor], ['0123456789abcdef', ''], 'another place begins at its first page');
+  state.show({ place: { kind: 'no-plans', id: '' } });
   await later();
   assert.deepEqual([asked.at(-1).folder, asked.at(-1).kind], ['', 'no-plan']);
   state.stop();
