@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { call, renderersOf, startDaemon, until } from '../api/daemon.mjs';
 import { onDisk } from '../api/on_disk.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
+import { full, later, missing, shoot, startWorld } from './browser.mjs';
 
 const wallSize = { width: 1920, height: 1080 };
 const names = ['3-D', 'Axial', 'Sagittal', 'Coronal'];
@@ -308,7 +308,7 @@ describe('the page of a wall', { skip: missing && `${missing} is missing` }, () 
     await drawn(wall);
   });
 
-  it('comes back by itself after its renderer was killed', async () => {
+  later('comes back by itself after its renderer was killed', async () => {
     const renderers = () => renderersOf(world.daemon.child.pid);
     const before = renderers();
     const told = wall.evaluate(
@@ -330,7 +330,7 @@ describe('the page of a wall', { skip: missing && `${missing} is missing` }, () 
     await live(wall, 'live');
   });
 
-  it('goes on by itself after the daemon was killed and started again', async () => {
+  later('goes on by itself after the daemon was killed and started again', async () => {
     const host = new URL(world.daemon.url).host;
     const { revision } = (await call(`${world.daemon.url}/api/v1/rooms/${room}`)).json;
     await until(
