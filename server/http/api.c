@@ -106,6 +106,7 @@ static const struct {
     { "DELETE", "/api/v1/meetings/{meeting}/links/{link}", api_meeting_link_end },
     { "GET", "/api/v1/audit", api_audit },
     { "GET", "/api/v1/records", api_records },
+    { "POST", "/api/v1/records/search", api_record_search },
     { "GET", "/api/v1/records/{record}", api_record },
     { "GET", "/api/v1/records/{record}/figures/{figure}", api_record_figure },
     { "GET", "/api/v1/records/{record}/paper", api_record_paper },

@@ -73,6 +73,7 @@ void api_meeting_link_end(struct api *api, struct call *call);
 void api_meeting_minutes(struct api *api, struct call *call);
 void api_audit(struct api *api, struct call *call);
 void api_records(struct api *api, struct call *call);
+void api_record_search(struct api *api, struct call *call);
 void api_record(struct api *api, struct call *call);
 /* Whether the record that was read may be seen by the caller, else the call is answered: as if there were none. */
 bool api_record_may_be_seen(struct call *call, const struct net_record *records, size_t n,

@@ -6,6 +6,7 @@
 #include "server/http/api_access.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
+#include "server/http/api_records.h"
 
 bool api_may_delete(struct call *call, size_t n_decided, const char *where)
 {
@@ -47,6 +48,19 @@ static cJSON *describe(const struct net_record *record)
     return json;
 }
 
+cJSON *api_record_row(const struct net_record *record)
+{
+    static const char *const names[] = { "decision", "plan_name", "patient", "label", "approval" };
+    cJSON *json = describe(record),
+          *facts = record->facts ? json_read(record->facts, strlen(record->facts), NULL) : NULL;
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        const char *text = json_text(facts, names[i]);
+        cJSON_AddStringToObject(json, names[i], text ? text : "");
+    }
+    cJSON_Delete(facts);
+    return json;
+}
+
 static void list_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
 {
     if (problem) {
@@ -57,7 +71,7 @@ static void list_was_read(void *context, const struct net_record *records, size_
     cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "records");
     for (size_t i = 0; i < n; i++)
         if (api_access_to_plan(call->api, call, ACCESS_LOOK, records[i].plan))
-            json_append(list, describe(&records[i]));
+            json_append(list, api_record_row(&records[i]));
     call_answer_json(call, 200, answer);
 }
 

@@ -179,9 +179,16 @@ static bool is_meeting(const char *path)
     return is_id_behind(is_minutes ? head : path, "/meetings/");
 }
 
+/* The list of kept records, and the paper of one. */
+static bool is_of_records(const char *path)
+{
+    return strcmp(path, "/records") == 0 || is_id_behind(path, "/records/");
+}
+
 const struct file *files_find(const struct files *files, const char *path)
 {
-    if (strcmp(path, "/") == 0 || is_sign_in(path) || is_id_behind(path, "/rooms/") || is_meeting(path))
+    if (strcmp(path, "/") == 0 || is_sign_in(path) || is_id_behind(path, "/rooms/") || is_meeting(path) ||
+        is_of_records(path))
         path = "/index.html";
     else if (is_id_behind(path, "/display/"))
         path = "/display.html";

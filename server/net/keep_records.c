@@ -45,6 +45,7 @@ static void give(const struct record_reader *reader, const struct store_answer *
                                        .item = record->item,
                                        .body = record->body,
                                        .hash = record->hash,
+                                       .facts = record->facts,
                                        .time_ms = record->time_ms,
                                        .figures = record->figures,
                                        .signatures = record->signatures,

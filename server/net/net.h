@@ -104,6 +104,7 @@ NODISCARD bool net_recording_read(struct net *net, const char *room, const char 
  * False with problem: the disk has too much to do, or nothing is kept. */
 struct net_record {
     const char *id, *room, *plan, *kind, *author, *author_name, *item, *body, *hash;
+    const char *facts; /* of a list, as in struct store_record */
     int64_t time_ms;
     const struct store_figure *figures; /* [STORE_FIGURES], of one record alone */
     const char *signatures, *decisions; /* as in struct store_record */

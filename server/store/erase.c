@@ -15,6 +15,7 @@
 #include "core/base/mem.h"
 #include "server/store/database.h"
 #include "server/store/heads.h"
+#include "server/store/records.h"
 #include "server/store/sql.h"
 
 enum { MAX_NOTE_BYTES = 64 << 10 };
@@ -217,9 +218,14 @@ static const char struck[] =
     " json_extract(item, '$.body.decision') END, 'plan_revision', CASE WHEN json_valid(item) THEN"
     " json_extract(item, '$.body.plan_revision') END)) FROM records WHERE n = ?1";
 
-static bool delete_figures(const struct erasing *erasing, int64_t n)
+/* The verdict is all that a list says of it then. */
+static const char renewed[] = "INSERT OR REPLACE INTO record_facts(record, facts) SELECT n, " RECORD_FACTS
+                              " FROM records WHERE n = ?1 AND json_valid(item) AND json_valid(body)";
+
+/* Runs a statement with the number of a record. */
+static bool run_of(const struct erasing *erasing, int64_t n, const char *statement)
 {
-    sqlite3_stmt *row = sql_prepare(erasing->db, "DELETE FROM record_figures WHERE record = ?1", erasing->err);
+    sqlite3_stmt *row = sql_prepare(erasing->db, statement, erasing->err);
     if (row)
         (void)sqlite3_bind_int64(row, 1, n);
     const bool ok = row && sql_step(row, "erasing a record", erasing->err);
@@ -248,7 +254,8 @@ static bool strike(const struct erasing *erasing, int64_t n)
         sql_bind_text(row, 4, body_hash);
         (void)snprintf(detail, sizeof detail, "{\"item\":\"%.63s\",\"sha256\":\"%s\",\"record_sha256\":\"%s\"}", id,
                        item_hash, body_hash);
-        ok = sql_step(row, "erasing a record", erasing->err) && delete_figures(erasing, n) &&
+        ok = sql_step(row, "erasing a record", erasing->err) &&
+             run_of(erasing, n, "DELETE FROM record_figures WHERE record = ?1") && run_of(erasing, n, renewed) &&
              append(erasing, room, "record-erased", detail);
         erasing->done->n_records++;
     } else {

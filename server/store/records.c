@@ -13,6 +13,7 @@ void store_record_finish(struct store_record *record)
 {
     free(record->item);
     free(record->body);
+    free(record->facts);
     free(record->signatures);
     free(record->decisions);
     for (size_t i = 0; i < STORE_FIGURES; i++)
@@ -20,10 +21,8 @@ void store_record_finish(struct store_record *record)
     *record = (struct store_record){ 0 };
 }
 
-/* The pictures of the record that was added last. */
-static bool write_figures(sqlite3 *db, const struct store_record *record, struct error *err)
+static bool write_figures(sqlite3 *db, sqlite3_int64 n, const struct store_record *record, struct error *err)
 {
-    const sqlite3_int64 n = sqlite3_last_insert_rowid(db);
     bool ok = true;
     for (int i = 0; ok && i < STORE_FIGURES; i++) {
         const struct store_figure *figure = &record->figures[i];
@@ -42,6 +41,21 @@ static bool write_figures(sqlite3 *db, const struct store_record *record, struct
         ok = sql_step(row, "writing a record", err);
         (void)sqlite3_finalize(row);
     }
+    return ok;
+}
+
+/* Adds what lists say of record n. */
+static bool write_facts(sqlite3 *db, sqlite3_int64 n, struct error *err)
+{
+    sqlite3_stmt *row =
+        sql_prepare(db,
+                    "INSERT OR REPLACE INTO record_facts(record, facts) SELECT n, " RECORD_FACTS " FROM records WHERE"
+                    " n = ?1 AND json_valid(item) AND json_valid(body)",
+                    err);
+    if (row)
+        (void)sqlite3_bind_int64(row, 1, n);
+    const bool ok = row && sql_step(row, "writing a record", err);
+    (void)sqlite3_finalize(row);
     return ok;
 }
 
@@ -69,7 +83,9 @@ bool records_write(sqlite3 *db, const struct store_room *room, struct error *err
         sql_bind_text(row, 8, record->item);
         sql_bind_text(row, 9, record->body);
         sql_bind_text(row, 10, hash);
-        ok = sql_step(row, "writing a record", err) && write_figures(db, record, err);
+        ok = sql_step(row, "writing a record", err);
+        const sqlite3_int64 n = sqlite3_last_insert_rowid(db);
+        ok = ok && write_facts(db, n, err) && write_figures(db, n, record, err);
     }
     (void)sqlite3_finalize(row);
     return ok;
@@ -151,7 +167,8 @@ static bool read_record(sqlite3_stmt *row, bool is_whole, struct store_record *r
     sql_text(row, 7, record->hash, sizeof record->hash);
     record->item = is_whole ? sql_copy_text(row, 8) : NULL;
     record->body = is_whole ? sql_copy_text(row, 9) : NULL;
-    return !is_whole || (record->item && record->body);
+    record->facts = is_whole ? NULL : sql_copy_text(row, 8);
+    return is_whole ? record->item && record->body : record->facts != NULL;
 }
 
 struct store_record *records_read(sqlite3 *db, const char *id, const char *before, size_t *n, struct error *err)
@@ -164,8 +181,9 @@ struct store_record *records_read(sqlite3 *db, const char *id, const char *befor
             ? sql_prepare(db,
                           is_whole ? "SELECT id, room, plan, kind, author, author_name, time_ms, hash, item, body FROM"
                                      " records WHERE id = ?1 ORDER BY n DESC"
-                                   : "SELECT id, room, plan, kind, author, author_name, time_ms, hash FROM records"
-                                     " WHERE ?2 = '' OR n < (SELECT max(n) FROM records WHERE id = ?2) ORDER BY n DESC",
+                                   : "SELECT id, room, plan, kind, author, author_name, time_ms, hash,"
+                                     " coalesce(facts, '{}') FROM records LEFT JOIN record_facts ON record = n WHERE"
+                                     " ?2 = '' OR n < (SELECT max(n) FROM records WHERE id = ?2) ORDER BY n DESC",
                           err)
             : NULL;
     bool ok = row != NULL;

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+#include "server/store/records.h"
 #include "server/store/sql.h"
 
 static const char *const steps[] = {
@@ -97,6 +98,10 @@ static const char *const steps[] = {
     "ALTER TABLE members ADD COLUMN waits_outside INTEGER NOT NULL DEFAULT 0;",
     /* 12: what people have stated of whom plans are of */
     "CREATE TABLE statements(plan TEXT PRIMARY KEY, body TEXT NOT NULL) STRICT;",
+    /* 13: what a list of records says of each: the verdict, plan and masked patient. Erased with the record */
+    "CREATE TABLE record_facts(record INTEGER PRIMARY KEY, facts TEXT NOT NULL) STRICT;"
+    "INSERT INTO record_facts(record, facts) SELECT n, " RECORD_FACTS " FROM records WHERE json_valid(item) AND"
+    " json_valid(body);",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

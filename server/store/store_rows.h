@@ -57,6 +57,7 @@ struct store_record {
     char id[64], room[64], plan[64], kind[16], author[64], author_name[164]; /* id: the item's */
     int64_t time_ms;                                                         /* since 1970 */
     char *item, *body;            /* the row of the item as it is kept; JSON */
+    char *facts;                  /* of a list: records.h; JSON, else NULL */
     char hash[STORE_AUDIT_HASH];  /* SHA-256 of body; written by the store */
     char *signatures, *decisions; /* items written in its room since, JSON lists, of one decision read alone: signatures
                                      up to the next decision, and later decisions; else NULL */

@@ -148,6 +148,7 @@ test('rooms, and what their members write down', async () => {
     () => ask('/api/v1/records'),
     (answer) => answer.records.length > 0,
   );
+  assert.equal((await ask('/api/v1/records/search', 'POST', { text: 'SNYDER', limit: 1 })).records.length, 1);
   await ask(`/api/v1/records/${records[0].id}`);
   await ask(`/api/v1/records/${records[0].id}/paper`);
   await ask('/api/v1/audit');

@@ -142,6 +142,8 @@ test('nothing on the disk names the patient after an uploaded plan was erased, a
     ['decision', '', 'Ann', { decision: 'accept', plan_revision: revision }, true],
   );
   assert.deepEqual([kept.body.erased, kept.body.sha256.length], [true, 64]);
+  const [row] = (await call(`${api}/records`)).json.records;
+  assert.deepEqual([row.id, row.decision, row.plan_name, row.patient, row.label], [decision.id, 'accept', '', '', '']);
   const { rows } = (await call(`${api}/audit?action=erase`)).json;
   assert.equal(rows.length, 1);
   assert.deepEqual(

@@ -337,12 +337,18 @@ test('the patient stands masked on paper, and in full for who may read that whil
   const { client } = await enter('case-1');
   const item = await put(client, 'decision', { decision: 'accept', text: '' }),
     at = `${api}/records/${item.id}`;
+  const list = (body) => call(`${api}/records/search`, 'POST', body),
+    found = await list({ text: '…419', kind: 'decision', limit: 1 }),
+    [row] = found.json.records;
+  assert.deepEqual([row.id, row.decision, row.patient, row.label, row.approval], [item.id, 'accept', 'Q. Z. …419', 'BNCT-2', 'APPROVED']);
+  for (const text of ['bnct-2', 'CASE-1', item.id, 'accept']) assert.equal((await list({ text })).json.records[0]?.id, item.id, text);
+  for (const text of ['Zweifel', '30419', '1961']) assert.deepEqual((await list({ text })).json, { records: [], more: false }, text);
   const one = await call(at),
     masked = await call(`${at}/paper`),
     named = await call(`${at}/paper?identity=true`);
   assert.match(one.json.body.kept.identity_sha256, /^[0-9a-f]{64}$/);
   for (const secret of ['Zweifel', 'Quirin', '77-30419', '1961-04-12', '19610412'])
-    for (const { text } of [one, masked]) assert.ok(!text.includes(secret), secret);
+    for (const { text } of [one, masked, found]) assert.ok(!text.includes(secret), secret);
   assert.deepEqual(
     masked.json.identity.fields.map(({ text, more }) => [text, more].join(' ').trim()),
     ['Q. Z. …419', 'masked', 'masked', 'BNCT-2 Approved'],

@@ -91,6 +91,26 @@ test('a room with a decision is deleted only with the word that its records stay
     (await call(`${api}/records?before=${items[1].id}`)).json.records.map(({ id }) => id),
     [items[0].id],
   );
+  const list = (body) => call(`${api}/records/search`, 'POST', body),
+    first = (await list({ limit: 1 })).json,
+    next = (await list({ limit: 1, before: items[1].id })).json;
+  assert.deepEqual([first.records.map(({ id }) => id), first.more], [[items[1].id], true]);
+  assert.deepEqual([next.records.map(({ id, decision }) => [id, decision]), next.more], [[[items[0].id, 'accept']], false]);
+  assert.deepEqual(
+    (await list({ text: 'ann', kind: 'signature' })).json.records.map(({ id }) => id),
+    [items[1].id],
+  );
+  assert.deepEqual((await list({ text: 'nobody' })).json, { records: [], more: false });
+  for (const [body, pointer] of [
+    [{ limit: 0 }, '/limit'],
+    [{ limit: 201 }, '/limit'],
+    [{ text: 7 }, '/text'],
+    [{ text: 'x'.repeat(201) }, '/text'],
+    [{ kind: 'note' }, '/kind'],
+    [{ before: '../x' }, '/before'],
+    [{ order: 'oldest' }, '/order'],
+  ])
+    assert.deepEqual(await list(body).then(({ status, json }) => [status, json.pointer]), [422, pointer]);
   const one = await call(`${api}/records/${items[1].id}`);
   assert.deepEqual(one.json.item, items[1]);
   assert.deepEqual(

@@ -395,6 +395,14 @@ describe('The matrix of rights', { concurrency: false }, () => {
     assert.deepEqual(await before('admin', foreign), [200, [own]]);
     assert.deepEqual(await before('planner', 'i-0000000000'), [200, []]);
     assert.deepEqual(await before('planner', foreign), [200, []]);
+    const found = async (kind, body) => {
+      const { status, json } = await ask(kind, '/api/v1/records/search', 'POST', body);
+      return [status, json.records.map((record) => record.id), json.more];
+    };
+    assert.deepEqual(await found('admin', { limit: 2 }), [200, [newest, foreign], true]);
+    assert.deepEqual(await found('planner', { limit: 2 }), [200, [newest, own], false]);
+    assert.deepEqual(await found('planner', { before: foreign }), [200, [], false]);
+    assert.deepEqual(await found('planner', { text: plans.foreign }), [200, [], false]);
   });
 
   test('a search finds what may be seen, and counts no other', async () => {

@@ -141,3 +141,58 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   await ann.getByRole('button', { name: 'Close' }).click();
   await ann.locator('.record-print').waitFor({ state: 'detached' });
 });
+
+test('kept records are found, read and printed when their room is gone', { skip: missing }, async () => {
+  const { decisions } = await record();
+  const page = await world.newPage('records');
+  await page.locator('.records-table').waitFor();
+  await page.waitForFunction(() => document.querySelector('link[href$="kept.css"]')?.sheet);
+  await call(`${world.daemon.url}/api/v1/rooms/${room}?records=keep`, 'DELETE');
+  const rows = page.locator('.records-table tbody tr');
+  assert.match(await rows.nth(0).innerText(), /Signature/);
+  assert.match(await rows.nth(1).innerText(), /Accept with changes[\s\S]*Phantom: modified Snyder head[\s\S]*Ann/);
+  assert.deepEqual(await axe(page), []);
+  await shoot(page, 'records-1440');
+  await page.setViewportSize({ width: 390, height: 844 });
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  await shoot(page, 'records-390');
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.getByRole('searchbox').fill('no such person');
+  await page.getByText('No record has this text.').waitFor();
+  await page.getByRole('searchbox').fill('accept-with');
+  await page.waitForFunction(() => document.querySelectorAll('.records-table tbody tr').length === 1);
+  await page.getByRole('combobox', { name: 'Which records' }).selectOption('signature');
+  await page.getByText('No record has this text.').waitFor();
+  await page.getByRole('searchbox').fill('');
+  await page.locator('.records-table td', { hasText: 'Signature' }).waitFor();
+  await page.getByRole('combobox', { name: 'Which records' }).selectOption('decision');
+  await page
+    .getByRole('link', { name: /^Pages of the record/ })
+    .first()
+    .click();
+  await page.getByRole('heading', { name: 'Record of a plan review' }).waitFor();
+  assert.ok(page.url().endsWith(`/records/${decisions[0].id}`));
+  assert.deepEqual(
+    await page.locator('.paper figure img').evaluateAll(async (pictures) => {
+      await Promise.all(pictures.map((picture) => picture.decode()));
+      return pictures.map(({ naturalWidth }) => naturalWidth);
+    }),
+    Array(4).fill(1600),
+  );
+  assert.deepEqual(await axe(page), []);
+  await page.waitForFunction(() => getComputedStyle(document.querySelector('.paper-table th')).textAlign === 'left');
+  await shoot(page, 'records-paper');
+  await page.getByRole('combobox', { name: 'Paper' }).selectOption('letter');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', { name: 'PDF' }).click()]);
+  const pdf = (await bytesOf(download)).toString('latin1');
+  assert.match(pdf, /^%PDF-/);
+  assert.match(pdf, /MediaBox \[ ?0 0 612 792/);
+  const pages = textOfPages(await page.pdf({ format: 'A4', path: 'build/test-artifacts/records-paper.pdf' }));
+  assert.match(pages.join('').replace(/\s/g, ''), /Acceptwithchanges/);
+  assert.ok(!/Print or save|The patient is masked here/.test(pages.join('')), 'no controls on paper');
+  await page.goto(`${world.daemon.url}/records/i-0000000000`);
+  await page
+    .getByRole('alert')
+    .getByText(/there is no record/)
+    .waitFor();
+});

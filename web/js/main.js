@@ -210,6 +210,9 @@ async function route() {
   } else if (place === 'meetings') {
     const { meetingPage } = await import('./features/meeting/meeting_page.js');
     if (n === nRoutes) leave = meetingPage(host, id, { api, clock, link: remembered(id).link, isMinutes: plan === 'minutes', enter });
+  } else if (place === 'records') {
+    const { recordsPage } = await import('./features/record/kept_page.js');
+    if (n === nRoutes) leave = recordsPage(host, id, { api, clock });
   } else if (place === 'p') {
     const { permalinkPage } = await import('./features/bookmarks/permalink.js');
     if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => enter(room, of, '', true) }); // going back does not make another room

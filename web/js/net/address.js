@@ -5,7 +5,7 @@ import { isId } from '../wire/check.js';
 export const roomPath = (room, link = '') => `/rooms/${room}${link ? `#link=${link}` : ''}`;
 
 /**
- * The place that an address names: a room, a meeting, a permalink ("p"), where people sign in ("signin"), or any other, for which there is the start page. Rooms were fragments once, "#/rooms/ID/PLAN?link=TOKEN":
+ * The place that an address names: a room, a meeting, a permalink ("p"), the kept records, where people sign in ("signin"), or any other, for which there is the start page. Rooms were fragments once, "#/rooms/ID/PLAN?link=TOKEN":
  * such addresses still lead there.
  * @param {{pathname: string, hash: string}} address @returns {{place: string, id: string, plan: string, link: string}}
  */
@@ -14,7 +14,7 @@ export function placeOf({ pathname, hash }) {
   const isInFragment = fragment.startsWith('/');
   const [, place = '', id = '', plan = ''] = (isInFragment ? fragment : pathname).split('/');
   const link = new URLSearchParams(isInFragment ? query : fragment).get('link') ?? '';
-  if (place === 'signin' && !isInFragment) return { place, id: isId(id) ? id : '', plan: '', link: '' };
+  if (['signin', 'records'].includes(place) && !isInFragment) return { place, id: isId(id) ? id : '', plan: '', link: '' };
   const hasId = ['rooms', 'p', 'meetings'].includes(place) && isId(id);
   return hasId ? { place, id, plan: isId(plan) ? plan : '', link: link.slice(0, 64) } : { place: '', id: '', plan: '', link: '' };
 }

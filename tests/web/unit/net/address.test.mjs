@@ -28,6 +28,12 @@ test('addresses of the time when rooms were fragments lead to the same rooms', (
   assert.deepEqual(at(`/#/p/${token}`), { place: 'p', id: token, plan: '', link: '' });
 });
 
+test('kept records have an address each, and one for all', () => {
+  assert.deepEqual(at('/records'), { ...nothing, place: 'records' });
+  assert.deepEqual(at('/records/i-12345'), { ...nothing, place: 'records', id: 'i-12345' });
+  assert.deepEqual(at('/#/records/i-12345'), nothing);
+});
+
 test('every other address shows the start page', () => {
   for (const other of [
     '/',

@@ -41,10 +41,11 @@ function paperDialog(world) {
       ${room.seesIdentity.value ? html`<label class="paper-named"><input type="checkbox" .checked=${isNamed} @change=${name}> ${say.named}</label>` : nothing}
       <a class="button" href=${pathOfPdf(id, isNamed)} download>${say.pdf}</a>
       <button class="primary" @click=${print}>${icon('print')}<span>${say.print}</span></button>
-      <button class="icon-button" aria-label=${say.close} @click=${close}>${icon('close')}</button></div>${sheet(shown.value)}</section>`;
+      <button class="icon-button" aria-label=${say.close} @click=${close}>${icon('close')}</button></div>${paperSheet(shown.value)}</section>`;
 }
 
-function sheet({ id, paper }) {
+/** The sheets of paper. @param {{id: string, paper: object}} of id: of the decision @returns a template */
+export function paperSheet({ id, paper }) {
   const { identity, blocks } = paper;
   const field = ({ label, text, more }) => html`<div><span>${label}</span><b>${text}</b> ${more}</div>`;
   return html`<article class="sheet paper">

@@ -7,6 +7,8 @@ export const say = sentences('start.later', {
   places: 'Places',
   today: 'Today',
   allPlans: 'All plans',
+  records: 'Kept',
+  keptRecords: 'Records',
   folders: 'Folders',
   mine: 'Mine',
   uploads: 'Uploads',

@@ -34,5 +34,6 @@ export function places(state, meetings) {
       folders.map(({ id, name, n }) => item('folder', folderSign, name, n, id)),
     )}
     ${group(say.mine, n_uploads ? [item('uploads', icon('upload'), say.uploads, n_uploads)] : [])}
+    ${group(say.records, [html`<li><a href="/records" data-place="records">${icon('print')}<span class="word">${say.keptRecords}</span></a></li>`])}
     ${group(say.always, n_no_plans ? [item('no-plans', folderSign, say.noPlans, n_no_plans)] : [])}</nav>`;
 }
