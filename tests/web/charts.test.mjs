@@ -268,7 +268,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     assert.equal(await page.locator('.chart-paper-band').count(), 1);
     assert.match(await page.locator('.chart-paper-key').first().textContent(), /brain: in the band, 50 % has no dose/);
     const brain = (await cells(page, 'Figures of the histograms')).find(([name]) => name === 'brain');
-    assert.deepEqual([brain[2], ...brain.slice(4, 7)], ['719', '≤ 0.500', '≥ 2.13', '≥ 8.00']); // half of it, at 4.25 on average
+    assert.deepEqual([brain[2], ...brain.slice(4, 7)], ['719', '≤\u00a00.500', '≥\u00a02.13', '≥\u00a08.00']); // half of it, at 4.25 on average
     assert.match(
       await page
         .locator('.chart-paper')
