@@ -67,10 +67,10 @@ static void blend(uint8_t *pixel, const uint8_t rgb[3], int coverage)
 struct canvas {
     struct image *image;
     int width_px, height_px;
-    const uint8_t *ink; /* of words and lines */
+    const uint8_t *ink, *halo; /* of words and lines, and of their rims */
 };
 
-/* Paints the coverage, whose top left is at (left, top), with a dark rim of HALO_PX around it. */
+/* Paints the coverage, whose top left is at (left, top), with a rim of HALO_PX around it. */
 static void paint_with_halo(const struct canvas *canvas, const struct coverage *coverage, int left, int top)
 {
     int width = coverage->width_px, height = coverage->height_px;
@@ -88,7 +88,7 @@ static void paint_with_halo(const struct canvas *canvas, const struct coverage *
                     around = there > around ? there : around;
                 }
             uint8_t *pixel = &canvas->image->rgba[4 * ((size_t)py * (size_t)canvas->image->width_px + (size_t)px)];
-            blend(pixel, halo, around * 3 / 4);
+            blend(pixel, canvas->halo, around * 3 / 4);
             blend(pixel, canvas->ink, coverage->pixels[(size_t)y * (size_t)width + (size_t)x]);
         }
 }
@@ -390,7 +390,9 @@ struct image *annotate_image(const struct image *image, const struct annotations
     int caption_px = caption.y_px < ANNOTATE_MAX_CAPTION_PX ? caption.y_px : ANNOTATE_MAX_CAPTION_PX;
     if (!(out = copy_onto_white(image, width_px, image->height_px + caption_px, err)))
         goto done;
-    const struct canvas canvas = { out, image->width_px, image->height_px, ink };
+    const bool is_on_light = annotations->is_on_light;
+    const struct canvas canvas = { out, image->width_px, image->height_px, is_on_light ? print : ink,
+                                   is_on_light ? ink : halo };
     is_done =
         paint_on_picture(&canvas, caption.fonts[0], annotations, err) &&
         (annotations->has_no_caption || paint_caption(&caption, annotations, caption_px, out, image->height_px, err));
@@ -406,7 +408,7 @@ done:
 bool annotate_mark(struct image *image, const char *words, struct error *err)
 {
     const int size_px = annotate_text_px(image->width_px) * 3 / 2;
-    const struct canvas canvas = { image, image->width_px, image->height_px, amber };
+    const struct canvas canvas = { image, image->width_px, image->height_px, amber, halo };
     struct font *font = font_create(size_px, err);
     bool is_done = font && paint_word(&canvas, font, words, size_px / 2 + HALO_PX, 1, size_px, err);
     font_destroy(font);

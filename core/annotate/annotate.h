@@ -47,6 +47,7 @@ struct annotations {
     struct annotation_label *labels; /* owned; [n_labels] */
     size_t n_labels;
     double pixels_per_mm;          /* of the picture as it is; 0: no scale bar */
+    bool is_on_light;              /* letters and scale bar are dark with a light rim */
     bool has_no_caption;           /* letters and scale bar alone: the items are told elsewhere */
     struct annotation_item *items; /* owned; [n_items], row by row */
     size_t n_items;

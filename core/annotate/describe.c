@@ -397,6 +397,7 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
         return false;
     camera_resolve(snapshot, &camera);
     annotations->letters = letters_of_edges(camera.right, camera.up);
+    annotations->is_on_light = visible_ground_is_light(snapshot);
     if (!marks_describe(annotations, snapshot, &camera, err) || !dose_label(annotations, snapshot, width_px, err) ||
         !beam_label(annotations, snapshot, &camera, width_px, err))
         return false;

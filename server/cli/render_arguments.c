@@ -37,7 +37,8 @@ static void print_help(void)
         "  --colors MAP      of the image: grey, viridis, cividis, inferno, magma, plasma, hot-iron, rainbow or turbo\n"
         "  --light A,E[,I]   where light comes from in 3-D: A degrees to the right of the eye, E up, I times as strong;\n"
         "                    patient:A,E from the front towards the patient's left, and towards superior\n"
-        "  --ambient N       light from all sides in 3-D, 0 to 1\n");
+        "  --ambient N       light from all sides in 3-D, 0 to 1\n"
+        "  --background C    the ground of 3-D: white, black, or red, green and blue as #rrggbb\n");
     printf(
         "  --dose ID         the dose that is shown\n"
         "  --accept A=B      uses two parts though they do not fit, such as dose:plan=image:ct; the caption says so; given\n"
@@ -278,6 +279,7 @@ static const struct option_row rows[] = {
     WORD("colors", show.colors),
     WORD("light", show.light),
     WORD("ambient", show.ambient),
+    WORD("background", show.background),
     { "from", required_argument, 0, take_from },
     { "orbit", required_argument, 0, take_orbit },
     { "clip", required_argument, 0, take_clip },

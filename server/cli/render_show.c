@@ -202,6 +202,18 @@ static bool add_ambient(const char *text, cJSON *patch, struct error *err)
     return true;
 }
 
+static bool add_background(const char *text, cJSON *patch, struct error *err)
+{
+    const char *color = strcmp(text, "white") == 0 ? "#ffffff" : strcmp(text, "black") == 0 ? "#000000" : text;
+    if (strlen(color) != 7 || color[0] != '#' || strspn(color + 1, "0123456789abcdefABCDEF") != 6)
+        return error_set(err, ERROR_RANGE, "--background '%s' is not white, black, or of the form #rrggbb", text);
+    char lower[8] = "";
+    for (size_t i = 0; color[i]; i++)
+        lower[i] = (char)(color[i] >= 'A' && color[i] <= 'F' ? color[i] - 'A' + 'a' : color[i]);
+    cJSON_AddStringToObject(render_member(patch, "space"), "background", lower);
+    return true;
+}
+
 cJSON *render_show_patch(const struct render_show *show, const cJSON *scene, struct error *err)
 {
     cJSON *patch = cJSON_CreateObject();
@@ -211,6 +223,7 @@ cJSON *render_show_patch(const struct render_show *show, const cJSON *scene, str
                    (!show->window || add_window(show->window, patch, err)) &&
                    (!show->light || add_light(show->light, patch, err)) &&
                    (!show->ambient || add_ambient(show->ambient, patch, err)) &&
+                   (!show->background || add_background(show->background, patch, err)) &&
                    (!show->plane || add_plane(show->plane, scene, patch, err));
     for (int i = 0; is_good && i < show->n_clips; i++)
         is_good = add_clip(show->clips[i], !show->is_uncapped, patch, err);

@@ -16,6 +16,7 @@ struct render_show {
     const char *colors;                       /* a word of color_map */
     const char *light;                        /* "[patient:]AZIMUTH,ELEVATION[,INTENSITY]" */
     const char *ambient;                      /* a number */
+    const char *background;                   /* "#RRGGBB", "white" or "black" */
     const char *plane;                        /* "NORMAL[@POINT]", each X,Y,Z: the oblique plane RENDER_SHOW_PLANE */
     const char *clips[RENDER_SHOW_MAX_CLIPS]; /* "axial-high=MM" and its like */
     int n_clips;

@@ -86,6 +86,7 @@ describe('beamroom', () => {
       [['render', plan, '-o', 'x.jpg', '--window', '40/400/bright'], /--window '40.400.bright' is not of the form 40.400, or 40.400.1.4/],
       [['render', plan, '-o', 'x.jpg', '--light', '31'], /--light '31' is not of the form 31,35/],
       [['render', plan, '-o', 'x.jpg', '--light', 'patient:1,2,x'], /--light 'patient:1,2,x'/],
+      [['render', plan, '-o', 'x.jpg', '--background', '#12345'], /--background '#12345' is not white, black, or of the form #rrggbb/],
       [['render', plan, '-o', 'x.jpg', '--ambient', 'much'], /--ambient 'much' is not a number/],
       [['render', plan, '-o', 'x.jpg', '--from', '0,91'], /--from '0,91'/],
     ]) {

@@ -107,12 +107,43 @@ static void intensity_and_ambient_light_add_up_as_their_numbers_say(void **state
     shots_forget(plan);
 }
 
+/* ---- the background --------------------------------------------------------------------------------------------- */
+
+static void the_background_is_the_scenes_in_3d_alone_and_lies_behind_what_is_translucent(void **state)
+{
+    (void)state;
+    static const uint32_t grounds[] = { 0x08090b, 0x808080, 0x336699, 0xffffff };
+    struct plan *plan = plate_plan();
+    for (size_t i = 0; i < sizeof grounds / sizeof grounds[0]; i++)
+        for (int is_slice = 0; is_slice < 2; is_slice++) {
+            struct scene scene = shots_scene(plan);
+            scene.space.background_rgb = grounds[i];
+            scene.lights.intensity = 0;
+            scene.lights.ambient = 0.5;
+            scene.surface.translucency = SCENE_TRANSLUCENCY_PLAIN;
+            shots_style(&scene, "green")->opacity = 0.5;
+            struct image *image = shots_plain(plan, scene,
+                                              is_slice ? shots_view(SCENE_KIND_AXIAL, origin, 4)
+                                                       : shots_view_from(origin, from_front, up, 4));
+            for (int c = 0; c < 3; c++) {
+                const int ground = is_slice ? shots_background[c] : (int)(grounds[i] >> (16 - 8 * c) & 255);
+                assert_int_equal(shots_pixel(image, 1, 1)[c], ground);
+                if (!is_slice) /* lit by 0.7 of its colour: ambient and the 0.2 of translucent ones */
+                    assert_close(shots_pixel(image, SHOTS_WIDTH / 2, SHOTS_HEIGHT / 2)[c],
+                                 0.5 * 255 * 0.7 * rgb[c] + 0.5 * ground, 2);
+            }
+            image_destroy(image);
+        }
+    shots_forget(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_light_fixed_to_the_viewer_comes_from_its_angles_in_the_picture),
         cmocka_unit_test(a_light_fixed_to_the_patient_stays_when_the_camera_turns),
         cmocka_unit_test(intensity_and_ambient_light_add_up_as_their_numbers_say),
+        cmocka_unit_test(the_background_is_the_scenes_in_3d_alone_and_lies_behind_what_is_translucent),
     };
     return shots_run("lights", tests, sizeof tests / sizeof tests[0]);
 }

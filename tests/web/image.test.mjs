@@ -6,9 +6,10 @@ import { isDeepStrictEqual } from 'node:util';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
+import { readPng } from '../api/png.mjs';
 import { axe } from './axe.mjs';
 import { overPictures } from './anatomy.mjs';
-import { full, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 import { histogram, percentiles, windows, writeThreeImages } from './three_images.mjs';
@@ -161,6 +162,62 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await until(lights, ({ azimuth_deg }) => azimuth_deg === 31.2, 20000);
     await shoot(page, 'image-lights');
     assert.deepEqual(await axe(page), []);
+    await page.context().close();
+  });
+
+  later('who follows sees the presenter’s picture turn by itself, and stand as it stands when that stops', async () => {
+    const { room, page } = await open();
+    const follower = await world.newPage(`rooms/${room}`);
+    await full(follower, 1);
+    const matrix = async (one) => Object.values((await header(one, 1)).clip_from_lps_mm);
+    const before = await matrix(follower);
+    await page.getByRole('button', { name: '3-D picture', exact: true }).click();
+    await enter(page, 'Degrees a second; less than 0 the other way', 40);
+    await page.locator('.block.turning').getByRole('button', { name: 'Turn by itself', exact: true }).click();
+    const seen = [before];
+    for (
+      let n = 0;
+      n < 3;
+      n++ // each picture from another side than those before
+    )
+      seen.push(
+        await until(
+          () => matrix(follower),
+          (now) => seen.every((old) => !isDeepStrictEqual(old, now)),
+        ),
+      );
+    assert.equal(await follower.locator('.pane-head .badge.turning').count(), 0, 'it is not the follower’s page that turns it');
+    await page.keyboard.press('Escape');
+    await page.locator('.pane-head .badge.turning').waitFor({ state: 'detached' });
+    await full(page, 1);
+    const last = await matrix(page);
+    await until(
+      () => matrix(follower),
+      (now) => now.every((value, at) => Math.abs(value - last[at]) < 1e-4 * Math.max(1, Math.abs(last[at]))),
+    );
+    assert.equal(await follower.getByRole('button', { name: /^Undo/ }).isDisabled(), true);
+    await follower.context().close();
+    await page.context().close();
+  });
+
+  once('the background of 3-D pictures is chosen for all, with letters that can be read on it, and undone', async () => {
+    const { room, page } = await open();
+    const background = async () => (await world.scene(room)).space.background;
+    const onLight = (view) => page.locator(`#picture-${view} .overlay .on-light .letter`).count();
+    assert.equal(await background(), '#08090b');
+    await page.getByRole('button', { name: '3-D picture', exact: true }).click();
+    await page.getByRole('radiogroup', { name: 'Background', exact: true }).getByRole('radio', { name: 'white' }).click();
+    await until(background, (now) => now === '#ffffff');
+    await page.locator('#picture-1 .overlay .on-light .letter').first().waitFor();
+    assert.equal(await onLight(2), 0, 'slices keep theirs');
+    await full(page, 1);
+    await shoot(page, 'image-background');
+    assert.deepEqual(await axe(page), []);
+    const picture = await fetch(`${world.daemon.url}/api/v1/rooms/${room}/snapshot?view=${encodeURIComponent('{"size_px":[320,240]}')}`);
+    assert.deepEqual(readPng(Buffer.from(await picture.arrayBuffer())).at(2, 2), [255, 255, 255]);
+    await page.getByRole('button', { name: /^Undo/ }).click();
+    await until(background, (now) => now === '#08090b');
+    await page.locator('#picture-1 .overlay .on-light').waitFor({ state: 'detached' });
     await page.context().close();
   });
 

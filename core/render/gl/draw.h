@@ -23,6 +23,7 @@ struct gl_frame {
     const struct draw_list *list;
     const struct camera *camera;
     struct visible_lights lights;
+    uint8_t ground[3];       /* what the picture is cleared to */
     double view_line_width;  /* snapshot_line_width: widths of lines and sizes of points are in its unit */
     int first_row, n_rows;   /* of the band's samples in the picture, and of the whole picture */
     float clip_from_lps[16]; /* from patient points to the clip space of the band, upside down */

@@ -263,8 +263,8 @@ static bool draw_all(const struct gl_frame *frame, struct error *err)
     const struct gl *gl = frame->gl;
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
     gl->Viewport(0, 0, frame->target->width_px, frame->target->height_px);
-    gl->ClearColor((float)visible_background[0] / 255.0f, (float)visible_background[1] / 255.0f,
-                   (float)visible_background[2] / 255.0f, 1);
+    gl->ClearColor((float)frame->ground[0] / 255.0f, (float)frame->ground[1] / 255.0f, (float)frame->ground[2] / 255.0f,
+                   1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     const struct draw_list *list = frame->list;
     bool is_good = true;
@@ -382,6 +382,7 @@ struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct d
                                         .camera = scope->camera,
                                         .lights = visible_lights(&scope->snapshot->scene.lights, scope->camera),
                                         .view_line_width = snapshot_line_width(scope->snapshot) };
+    visible_ground(scope->snapshot, picture->frame.ground);
     return picture;
 }
 

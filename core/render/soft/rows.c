@@ -4,10 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-void soft_rows_clear(const struct soft_band *band)
+void soft_rows_clear(const struct soft_band *band, const uint8_t rgb[3])
 {
-    const uint8_t *b = visible_background;
-    uint32_t color = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | 0xff000000u;
+    uint32_t color = (uint32_t)rgb[0] | (uint32_t)rgb[1] << 8 | (uint32_t)rgb[2] << 16 | 0xff000000u;
     for (size_t i = 0; i < (size_t)band->stride * (size_t)band->n_rows; i++) {
         band->depth[i] = 1;
         band->color[i] = color;

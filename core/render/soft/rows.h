@@ -3,7 +3,7 @@
  * band each. */
 #include "core/render/soft/frame.h"
 
-void soft_rows_clear(const struct soft_band *band);
+void soft_rows_clear(const struct soft_band *band, const uint8_t rgb[3]);
 /* Into the picture, halved where it has four samples a pixel. */
 void soft_rows_write(const struct soft_frame *frame, const struct soft_kernels *kernels, const struct soft_band *band);
 /* Keeps the depths of the band's pixels in the list: those of opaque shapes, then, negative, those of planes before

@@ -423,6 +423,8 @@ static void draw_bands(void *context, int part, int n_parts)
     struct soft_renderer *renderer = frame->renderer;
     bool is_first = part == 0;
     (void)n_parts;
+    uint8_t ground[3];
+    visible_ground(frame->scope->snapshot, ground);
     for (size_t piece; (is_first || !pause_is_due(frame)) &&
                        (piece = atomic_fetch_add(&frame->next_band, 1)) < (size_t)frame->n_bands;) {
         is_first = false;
@@ -434,7 +436,7 @@ static void draw_bands(void *context, int part, int n_parts)
                                   frame->width + SOFT_PADDING,
                                   (float *)(void *)scratch->band,
                                   scratch->band + scratch->n_band };
-        soft_rows_clear(&band);
+        soft_rows_clear(&band, ground);
         draw_all(frame, scratch, &band, (int)piece);
         soft_rows_write(frame, frame->renderer->kernels, &band);
     }

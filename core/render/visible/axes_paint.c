@@ -4,9 +4,10 @@
 
 #include <math.h>
 
+#include "core/render/visible/visible.h"
 #include "core/scene/axes.h"
 
-static const uint32_t halo_rgb = 0x07080a;
+static const uint32_t halo_rgb = 0x07080a, halo_on_light_rgb = 0xf4f6f8;
 static const double halo_px = 1, faint = 0.3, plain = 0.95, away = 0.55;
 
 /* A stroke of width_px pixels of the full picture, and its rim. */
@@ -17,6 +18,11 @@ static struct stroke stroke_of(const struct space_pen *pen, double width_px)
 {
     const double width = fmax(1, width_px * pen->scale);
     return (struct stroke){ width, width + 2 * halo_px * pen->scale };
+}
+
+static uint32_t halo_of(const struct space_pen *pen)
+{
+    return visible_ground_is_light(pen->snapshot) ? halo_on_light_rgb : halo_rgb;
 }
 
 /* Part of an axis from where the axes meet, 0 .. 1. */
@@ -61,7 +67,7 @@ static void paint_lines(const struct space_pen *pen, uint32_t rgb, struct stroke
         add_part(pen, meet, end, 0, ends[i].in_box, stroke.width_px);
         paint_flush(pen->paint, rgb, faint * strength);
         add_part(pen, meet, end, ends[i].in_box, 1, stroke.rim_px);
-        paint_flush(pen->paint, halo_rgb, plain * strength);
+        paint_flush(pen->paint, halo_of(pen), plain * strength);
         add_part(pen, meet, end, ends[i].in_box, 1, stroke.width_px);
         if (scene->axes.ticks)
             add_ticks(pen, meet, end, stroke.width_px);
@@ -104,7 +110,7 @@ static void paint_corner(const struct space_pen *pen, uint32_t rgb, struct strok
                                  to = { corner.at[0] + corner.arm[i][0], corner.at[1] + corner.arm[i][1] };
         const double strength = plain * (corner.away[i] > 0 ? away : 1);
         paint_line(pen->paint, from, to, stroke.rim_px);
-        paint_flush(pen->paint, halo_rgb, strength);
+        paint_flush(pen->paint, halo_of(pen), strength);
         paint_line(pen->paint, from, to, stroke.width_px);
         paint_flush(pen->paint, rgb, strength);
     }

@@ -7,10 +7,11 @@
 #include "core/render/visible/beam_eye_marks.h"
 #include "core/render/visible/draw_beams.h"
 #include "core/render/visible/draw_isolines.h"
+#include "core/render/visible/visible.h"
 
 static const uint32_t grid_rgb = 0xf4f6f8;
 static const double grid_width_px = 1.5;
-static const uint32_t axes_rgb = 0xd6dce2;
+static const uint32_t axes_rgb = 0xd6dce2, axes_on_light_rgb = 0x232a31;
 static const double axes_width_px = 1.5;
 
 static bool add_region(struct draw_list *list, const struct draw_scope *scope, size_t region, struct error *err)
@@ -71,14 +72,14 @@ static bool add_dose_grid(struct draw_list *list, const struct snapshot *snapsho
                          err);
 }
 
-static bool add_axes(struct draw_list *list, struct error *err)
+static bool add_axes(struct draw_list *list, const struct snapshot *snapshot, struct error *err)
 {
     return draw_list_add(list,
                          &(struct draw){ .pass = DRAW_OVERLAY,
                                          .kind = DRAW_AXES,
                                          .depth = DRAW_DEPTH_NONE,
                                          .subject = subject_plan(),
-                                         .color_rgb = axes_rgb,
+                                         .color_rgb = visible_ground_is_light(snapshot) ? axes_on_light_rgb : axes_rgb,
                                          .opacity = 1,
                                          .lines = { .width_px = axes_width_px } },
                          err);
@@ -107,7 +108,7 @@ bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct
         return false;
     if (is_pane && (!draw_isolines_on_pane(list, scope, err) || !draw_beams_on_pane(list, scope, err)))
         return false;
-    if (!is_pane && scene->axes.visible && !add_axes(list, err))
+    if (!is_pane && scene->axes.visible && !add_axes(list, snapshot, err))
         return false;
     if (scene->dose.grid && snapshot->dose >= 0 && fit_is_used(&snapshot->fits.doses[snapshot->dose]) &&
         !add_dose_grid(list, snapshot, err))

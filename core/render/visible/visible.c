@@ -1,6 +1,7 @@
 /* Chooses for each region of a scene if it is shown, as which shape and with which look. */
 #include "core/render/visible/visible.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,26 @@
 #include "core/render/visible/shading.h"
 
 const uint8_t visible_background[3] = { 0x08, 0x09, 0x0b };
+
+void visible_ground(const struct snapshot *snapshot, uint8_t rgb[3])
+{
+    const uint32_t color = snapshot->scene.space.background_rgb;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = snapshot->view.kind == SCENE_KIND_3D ? (uint8_t)(color >> (16 - 8 * c) & 255) : visible_background[c];
+}
+
+bool visible_ground_is_light(const struct snapshot *snapshot)
+{
+    static const double parts[3] = { 0.2126, 0.7152, 0.0722 }, even = 0.179; /* contrast with white and black alike */
+    uint8_t rgb[3];
+    double luminance = 0;
+    visible_ground(snapshot, rgb);
+    for (int c = 0; c < 3; c++) {
+        const double part = rgb[c] / 255.0;
+        luminance += parts[c] * (part <= 0.04045 ? part / 12.92 : pow((part + 0.055) / 1.055, 2.4));
+    }
+    return luminance > even;
+}
 
 /* ---- shapes ----------------------------------------------------------------------------------------------------- */
 

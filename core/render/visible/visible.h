@@ -104,3 +104,7 @@ int visible_samples(const struct snapshot *snapshot, const struct camera *camera
 /* The colour of the background, RGB: the page's colour of an empty pane (--pane in web/css/tokens.css). Each channel of
  * an image's grey is at least this, so that air fades into the pane and the image's box does not show. */
 extern const uint8_t visible_background[3];
+/* The colour that pictures of the snapshot are cleared to: the scene's in 3-D views, else visible_background. */
+void visible_ground(const struct snapshot *snapshot, uint8_t rgb[3]);
+/* True if dark ink has more contrast than light ink on it: WCAG 2.2, relative luminance above 0.179. */
+bool visible_ground_is_light(const struct snapshot *snapshot);

@@ -260,7 +260,7 @@ static bool tracks_reach(const cJSON *view, const cJSON *before, const cJSON *af
 
 bool change_reaches(const cJSON *view, const cJSON *before, const cJSON *after, const cJSON *patch)
 {
-    static const char *const in_3d[] = { "axes", "clip", "lights", "still", NULL };
+    static const char *const in_3d[] = { "axes", "clip", "lights", "space", "still", NULL };
     static const char *const in_browser[] = { "measures", "constraints", NULL };
     if (!cJSON_IsObject(patch))
         return true;

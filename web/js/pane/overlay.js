@@ -24,22 +24,41 @@ const digitPx = 7; // widest character of a caption, on average
  * @param {{box: {low: number[], high: number[]}, form: string, crosshair: number[]}|null} [what.axes] the plan's box, where its axes have letters
  * @param {number} what.pxPerMm CSS px; 0 in perspective
  * @param {string} what.windowText
+ * @param {string} [what.ground] the scene's colour behind 3-D pictures, #rrggbb
  */
-export function overlay({ kind, header, box, pane: [width, height], point, isOffPlane = false, axes = null, pxPerMm, windowText }) {
+export function overlay({
+  kind,
+  header,
+  box,
+  pane: [width, height],
+  point,
+  isOffPlane = false,
+  axes = null,
+  pxPerMm,
+  windowText,
+  ground = '',
+}) {
   const matrix = header.clip_from_lps_mm;
   const at = point && toPicture(matrix, point);
   const mark = at && { x: box.x + at[0] * box.width, y: box.y + at[1] * box.height };
   return svg`
     ${mark && (isInSpace(kind) ? marker(mark, box) : cross(mark, box, isOffPlane))}
-    ${edgeText(edgeLetters(matrix), width, height)}
+    <g class=${kind === '3d' && isLight(ground) ? 'on-light' : ''}>${edgeText(edgeLetters(matrix), width, height)}
     ${isInSpace(kind) && axes ? axesText(matrix, axes, box, header.full_px) : nothing}
-    ${pxPerMm > 0 && width >= scaleFrom ? scaleBar(pxPerMm, width, height) : nothing}
+    ${pxPerMm > 0 && width >= scaleFrom ? scaleBar(pxPerMm, width, height) : nothing}</g>
     ${!isInSpace(kind) && width >= windowFrom ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${fitting(windowText, width / 2 - letterHalf - 12)}</text>` : nothing}`;
 }
 
 /** The patient's axes of which letters are drawn: axes of overlay(). */
 export const axesOf = ({ axes, ...scene }, plan) =>
   axes?.visible && axes.letters !== false && plan?.bounds ? { box: plan.bounds, form: axes.form, crosshair: crosshair(scene) } : null;
+
+/** Dark ink has more contrast on it than light ink: WCAG 2.2, relative luminance. As visible_ground_is_light of core/render/visible. @param {string} color #rrggbb */
+export function isLight(color) {
+  const parts = [0.2126, 0.7152, 0.0722];
+  const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+  return parts.reduce((sum, part, c) => sum + part * linear(Number.parseInt(color.slice(1 + 2 * c, 3 + 2 * c), 16) / 255), 0) > 0.179;
+}
 
 /** The text, without what stands after the window's centre and width where there is no room for it; '' where there is none for those. */
 function fitting(text, roomPx) {

@@ -206,6 +206,7 @@ export class Pane {
     const layers = this.actions.parts.map((part) => part.layer?.({ scene, plane, tolerance, header, box, pane }));
     return html`${layers}${overlay({
       kind: view.kind,
+      ground: scene.space?.background,
       header,
       box,
       pane,

@@ -138,6 +138,7 @@ export class WallPane {
     const layers = this.actions.parts.map((part) => part.layer?.({ scene: scene.value, plane, tolerance, header, box, pane }));
     return svg`${layers}${overlay({
       kind: this.#view.kind,
+      ground: scene.value.space?.background,
       header,
       box,
       pane,

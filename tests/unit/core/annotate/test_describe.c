@@ -390,6 +390,36 @@ static void cuts_caps_and_the_volume_are_described(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static void letters_are_dark_where_the_background_of_a_3d_view_is_light(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t rgb;
+        bool is_light; /* relative luminance by hand: 0.0027, 0.162, 0.216, 0.236, 1 against 0.179 */
+    } grounds[] = {
+        { 0x08090b, false }, { 0x707070, false }, { 0x808080, true }, { 0xff3300, true }, { 0xffffff, true }
+    };
+    struct plan *plan = made_plan_in_hu();
+    for (size_t i = 0; i < sizeof grounds / sizeof grounds[0]; i++)
+        for (int pane = 0; pane < 2; pane++) {
+            struct scene scene;
+            struct view view = view_default;
+            struct annotations words;
+            struct error err = { 0 };
+            char field[128];
+            scene_for_plan(plan, &scene);
+            scene.space.background_rgb = grounds[i].rgb;
+            view.kind = pane ? SCENE_KIND_AXIAL : SCENE_KIND_3D;
+            struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+            assert_non_null(snapshot);
+            assert_true(annotations_describe(&words, snapshot, 512, "", &err));
+            assert_int_equal(words.is_on_light, grounds[i].is_light && !pane);
+            annotations_finish(&words);
+            snapshot_unref(snapshot);
+        }
+    plan_and_derived_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -400,6 +430,7 @@ int main(void)
         cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
         cmocka_unit_test(an_oblique_pane_and_a_blended_image_are_described),
         cmocka_unit_test(cuts_caps_and_the_volume_are_described),
+        cmocka_unit_test(letters_are_dark_where_the_background_of_a_3d_view_is_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,6 +83,7 @@ static void what_is_drawn_in_3d_only_reaches_3d_and_measures_reach_nothing(void 
     assert_string_equal(reached("{\"image\":{\"volume\":{\"visible\":true}}}"), "3b");
     assert_string_equal(reached("{\"image\":{\"cull_below\":5}}"), "3b");
     assert_string_equal(reached("{\"lights\":{\"ambient\":0.5}}"), "3b");
+    assert_string_equal(reached("{\"space\":{\"background\":\"#ffffff\"}}"), "3b");
     assert_string_equal(reached("{\"measures\":{\"m\":{\"kind\":\"angle\"}}}"), "");
 }
 

@@ -16,6 +16,8 @@ const sides = [
   ['axial', say.axial],
 ];
 
+const grounds = { dark: '#08090b', grey: '#808080', white: '#ffffff' };
+
 /** Where the camera can look from: word, name, tooltip. */
 const directions = [
   ['anterior', say.anterior, say.fromAnterior],
@@ -41,6 +43,22 @@ function cullRow(scene, image, isDisabled, change) {
   return html`<div class="checks cull"><label title=${say.leaveOutIs}><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
     @change=${(event) => change({ image: { cull_below: event.target.checked ? usualCull(image, scene.image.window) : cullsNothing } }, event)}>${say.leaveOut}</label>
     ${isOn ? numberField(say.leaveOutValues, Number(value.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
+}
+
+/** The ground of 3-D pictures: of everybody in the room, as the lights are. */
+function groundRow(background, isDisabled, set) {
+  const known = Object.keys(grounds).find((name) => grounds[name] === background) ?? '';
+  return html`<dt>${say.ground}</dt><dd class="pair ground">${segment(
+    say.ground,
+    [
+      ['dark', say.groundDark],
+      ['grey', say.groundGrey],
+      ['white', say.groundWhite],
+    ],
+    known,
+    isDisabled,
+    (name, event) => set(grounds[name], event),
+  )}<input type="color" class="dose-swatch" .value=${live(background)} aria-label=${say.groundColour} title=${say.groundColour} ?disabled=${isDisabled} @input=${(event) => set(event.target.value, event)}></dd>`;
 }
 
 /** Camera and translucency of the 3-D picture. */
@@ -83,7 +101,8 @@ export function pictureBlock(world, isDisabled, change) {
           scene.surface.translucent_order,
           isDisabled,
           (translucent_order, event) => change({ surface: { translucent_order } }, event),
-        )}</dd></dl>
+        )}</dd>
+        ${scene.space ? groundRow(scene.space.background, isDisabled, (background, event) => change({ space: { background } }, event)) : nothing}</dl>
       <div class="buttons looks" role="group" aria-label=${say.lookFrom}>${directions.map(
         ([from, name, about]) => html`<button ?disabled=${isDisabled} title=${about}
         @click=${(event) => cameras.lookFrom(from, event.timeStamp)}>${name}</button>`,

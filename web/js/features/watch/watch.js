@@ -259,7 +259,7 @@ class Small {
     const box = { width: header.width_px * scale, height: header.height_px * scale };
     const hasPoint = scene && !isTilted(kind) && (plan?.images.length || plan?.regions.length);
     const draft = isDrafted(plan, scene) ? svg`<text class="halo draft-word" x="6" y="16">${say.draftBeam}</text>` : nothing;
-    return svg`${draft}${overlay({ kind, header, box: { ...box, x: (width - box.width) / 2, y: (height - box.height) / 2 }, pane: [width, height], point: hasPoint ? crosshair(scene) : null, pxPerMm: 0, windowText: '' })}`;
+    return svg`${draft}${overlay({ kind, ground: scene?.space?.background, header, box: { ...box, x: (width - box.width) / 2, y: (height - box.height) / 2 }, pane: [width, height], point: hasPoint ? crosshair(scene) : null, pxPerMm: 0, windowText: '' })}`;
   }
 
   #next() {
