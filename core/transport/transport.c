@@ -13,6 +13,8 @@
 /* The error is the spread of lanes; what a lane adds up does not depend on the thread that works on it. A lane takes
  * its own entries of the list, so that the spread includes what the list's length costs. */
 enum { LANES = PHASE_SPACE_LANES, CHUNK = 256, NEUTRONS_PER_PHOTON = 8 };
+/* Histories that a lane adds up in single precision, where they need half of the cache, before they go to its sums. */
+enum { FLUSH = 1 << 16 };
 #define LEAST_MATTER .05F /* of a cell, for values */
 
 struct run {
@@ -22,9 +24,11 @@ struct run {
     struct particle_tables *tables;
     struct world world;
     struct lane lanes[LANES];
+    double (*sums[LANES])[N_TALLIES];   /* by cell, cm */
+    float (*scratch[LANES])[N_TALLIES]; /* by thread */
+    size_t n_cells;
     uint64_t n_photons;
     double photon_weight; /* of a photon of the beam, for neutrons of weight 1 */
-    uint64_t done[LANES];
     atomic_int next_lane;
     atomic_uint_fast64_t n_done;
     atomic_bool is_cancelled;
@@ -77,6 +81,12 @@ static void aim(struct run *run)
     geometry_direct(&run->geometry, along, world->axis[2]);
 }
 
+static int n_threads(const struct run *run)
+{
+    int n = run->input->n_threads;
+    return n < 1 ? 1 : n < LANES ? n : LANES;
+}
+
 static bool prepare(struct run *run, struct error *err)
 {
     const struct transport_input *input = run->input;
@@ -89,9 +99,11 @@ static bool prepare(struct run *run, struct error *err)
     for (size_t i = 0; i < input->n_materials; i++)
         medium_init(&run->media[i], &input->materials[i]);
     particle_tables_init(run->tables);
-    size_t n_cells = grid_n_voxels(&run->geometry.cells);
+    run->n_cells = grid_n_voxels(&run->geometry.cells);
     for (int lane = 0; lane < LANES; lane++)
-        if (!(run->lanes[lane].tally = mem_array(n_cells, sizeof *run->lanes[lane].tally, UINT64_MAX, err)))
+        if (!(run->sums[lane] = mem_array(run->n_cells, sizeof *run->sums[lane], UINT64_MAX, err)) ||
+            (lane < n_threads(run) &&
+             !(run->scratch[lane] = mem_array(run->n_cells, sizeof *run->scratch[lane], UINT64_MAX, err))))
             return false;
     run->world.geometry = &run->geometry;
     run->world.media = run->media;
@@ -126,11 +138,23 @@ static bool is_stopped(struct run *run)
     return atomic_load(&run->is_cancelled);
 }
 
+/* Moves what a lane added up to its sums. */
+static void flush(struct run *run, int index)
+{
+    float *from = run->lanes[index].tally[0];
+    double *to = run->sums[index][0];
+    for (size_t i = 0; i < run->n_cells * N_TALLIES; i++)
+        to[i] += (double)from[i];
+    memset(from, 0, run->n_cells * sizeof *run->scratch[0]);
+}
+
 static void work(struct run *run, int index, bool is_caller)
 {
     struct lane *lane = &run->lanes[index];
     uint64_t n_neutrons = lane_share(run->input->n_histories, index), n_photons = lane_share(run->n_photons, index);
     for (uint64_t i = 0; i < n_neutrons + n_photons; i++) {
+        if (i > 0 && i % FLUSH == 0)
+            flush(run, index);
         if (i % CHUNK == 0) {
             if (is_stopped(run))
                 return;
@@ -147,14 +171,17 @@ static void work(struct run *run, int index, bool is_caller)
             walk_photon(&run->world, lane, photon, photon->weight * (float)run->photon_weight, &random);
         }
     }
+    flush(run, index);
 }
 
 static void work_lanes(void *context, int part, int n_parts)
 {
     struct run *run = context;
     (void)n_parts;
-    for (int lane; (lane = atomic_fetch_add(&run->next_lane, 1)) < LANES;)
+    for (int lane; (lane = atomic_fetch_add(&run->next_lane, 1)) < LANES;) {
+        run->lanes[lane].tally = run->scratch[part];
         work(run, lane, part == 0);
+    }
 }
 
 static const struct {
@@ -174,9 +201,9 @@ static void value_of(const struct run *run, size_t cell, int quantity, double sc
 {
     double sum = 0, squares = 0;
     for (int lane = 0; lane < LANES; lane++)
-        sum += run->lanes[lane].tally[cell][meaning[quantity].tally];
+        sum += run->sums[lane][cell][meaning[quantity].tally];
     for (int lane = 0; lane < LANES; lane++) {
-        double apart = run->lanes[lane].tally[cell][meaning[quantity].tally] - sum / LANES;
+        double apart = run->sums[lane][cell][meaning[quantity].tally] - sum / LANES;
         squares += apart * apart;
     }
     *value = (float)(sum * scale * meaning[quantity].factor);
@@ -198,10 +225,9 @@ static bool finish(struct run *run, struct transport_result *result, struct erro
 {
     if (!make_volumes(run, result, err))
         return false;
-    size_t n_cells = grid_n_voxels(&run->geometry.cells);
     double cell_cm3 = grid_voxel_mm3(&run->geometry.cells) / 1000;
     double scale = run->input->beam->neutrons.per_unit / (double)run->input->n_histories / cell_cm3;
-    for (size_t cell = 0; cell < n_cells; cell++) {
+    for (size_t cell = 0; cell < run->n_cells; cell++) {
         float matter = run->geometry.matter[cell];
         if (!run->input->is_whole_cells && matter < LEAST_MATTER)
             continue;
@@ -248,7 +274,7 @@ static bool run_all(struct run *run, struct transport_result *result, struct err
     int64_t began_us = clock_now_us();
     if (!prepare(run, err))
         return false;
-    parallel_run(run->input->n_threads < LANES ? run->input->n_threads : LANES, work_lanes, run);
+    parallel_run(n_threads(run), work_lanes, run);
     if (atomic_load(&run->is_cancelled))
         return error_set(err, ERROR_CANCELLED, "the simulation was cancelled");
     if (!finish(run, result, err))
@@ -269,8 +295,10 @@ bool transport_run(const struct transport_input *input, struct transport_result 
         return false;
     run->input = input;
     bool is_done = run_all(run, result, err);
-    for (int lane = 0; lane < LANES; lane++)
-        free(run->lanes[lane].tally);
+    for (int lane = 0; lane < LANES; lane++) {
+        free(run->sums[lane]);
+        free(run->scratch[lane]);
+    }
     geometry_finish(&run->geometry);
     free(run->media);
     free(run->tables);

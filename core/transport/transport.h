@@ -56,7 +56,8 @@ struct transport_result {
 
 /* The whole input is checked before memory is taken.
  *
- *   errors   ERROR_RANGE, ERROR_LIMIT: what, where, expected; ERROR_MEMORY; ERROR_CANCELLED within 20 ms
+ *   errors   ERROR_RANGE, ERROR_LIMIT: what, where, expected; ERROR_MEMORY; ERROR_CANCELLED, once histories
+ *            run within 256 of them
  *   thread   any; starts n_threads, which are joined before it returns
  *   returns  equal bytes for equal input, whatever n_threads is */
 NODISCARD bool transport_run(const struct transport_input *input, struct transport_result *result, struct error *err);

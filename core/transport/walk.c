@@ -73,7 +73,7 @@ static void follow_photon(const struct world *world, struct lane *lane, float po
         if (material > 0 || world->is_whole_cells) {
             ptrdiff_t cell = geometry_cell(world->geometry, position);
             if (cell >= 0)
-                lane->tally[cell][TALLY_PHOTON] += (double)(weight * tables->photon_gy_cm2[bin] / highest);
+                lane->tally[cell][TALLY_PHOTON] += weight * tables->photon_gy_cm2[bin] / highest;
         }
         if (material == 0 ||
             random_low(bits) * highest >= tables->photon_cm2_g[bin] * world->media[material - 1].electrons)
@@ -142,20 +142,26 @@ static void scatter(const struct world *world, const struct medium *medium, int 
     direction_turn(direction, (1 + mass * cosine) / sqrtf(square), tables->azimuth[bits & 1023]);
 }
 
-static inline void count(const struct world *world, struct lane *lane, const float position[3], float energy_ev,
-                         int bin, float path_cm)
+/* The cell at a position; -1 outside. Its tally is fetched while the material is looked up, which takes as long. */
+static inline ptrdiff_t fetch_cell(const struct world *world, const struct lane *lane, const float position[3])
 {
     ptrdiff_t cell = geometry_cell(world->geometry, position);
-    if (cell < 0)
-        return;
-    double *tally = lane->tally[cell];
+    if (cell >= 0)
+        __builtin_prefetch(&lane->tally[cell], 1);
+    return cell;
+}
+
+static inline void count(const struct world *world, struct lane *lane, ptrdiff_t cell, float energy_ev, int bin,
+                         float path_cm)
+{
+    float *tally = lane->tally[cell];
     int band = energy_ev < NEUTRON_THERMAL_EV ? TALLY_THERMAL
                : energy_ev < NEUTRON_FAST_EV  ? TALLY_EPITHERMAL
                                               : TALLY_FAST;
-    tally[band] += (double)path_cm;
-    tally[TALLY_SLOW] += (double)(path_cm * world->tables->inverse_speed[bin]);
+    tally[band] += path_cm;
+    tally[TALLY_SLOW] += path_cm * world->tables->inverse_speed[bin];
     if (band == TALLY_FAST)
-        tally[TALLY_RECOIL] += (double)(path_cm * world->tables->recoil_gy_cm2[bin]);
+        tally[TALLY_RECOIL] += path_cm * world->tables->recoil_gy_cm2[bin];
 }
 
 void walk_neutron(const struct world *world, struct lane *lane, const struct particle *particle, struct random *random)
@@ -171,13 +177,14 @@ void walk_neutron(const struct world *world, struct lane *lane, const struct par
         float highest = world->neutron_highest[bin], step = -logf(random_high(bits)) / highest;
         for (int i = 0; i < 3; i++)
             position[i] += direction[i] * step;
+        ptrdiff_t cell = fetch_cell(world, lane, position);
         int material = geometry_material(world->geometry, position);
         if (material < 0) {
             lane->balance.leaked += (double)weight;
             return;
         }
-        if (material > 0 || world->is_whole_cells)
-            count(world, lane, position, energy_ev, bin, weight / highest);
+        if (cell >= 0 && (material > 0 || world->is_whole_cells))
+            count(world, lane, cell, energy_ev, bin, weight / highest);
         if (material == 0)
             continue;
         const struct medium *medium = &world->media[material - 1];

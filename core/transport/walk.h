@@ -35,7 +35,7 @@ struct world {
     double aperture_cm[3], axis[3][3]; /* of the beam: x, y and its direction, in the box's frame */
 };
 struct lane {
-    double (*tally)[N_TALLIES]; /* by cell, cm */
+    float (*tally)[N_TALLIES]; /* by cell, cm; the thread's, for a while */
     struct balance balance;
 };
 void world_init(struct world *world); /* fills what follows from the rest */
