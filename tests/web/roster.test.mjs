@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { until as ask } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
-import { action, enter as enterAs, openRoster as open, row, says, toast } from './people.mjs';
+import { full, later, missing, shoot, startWorld } from './browser.mjs';
+import { action, enter as enterAs, matrix, openRoster as open, row, says, showsAs, toast } from './people.mjs';
 
 const sizes = [
   ['1440x900', { viewport: { width: 1440, height: 900 } }],
@@ -124,5 +124,60 @@ describe('the roster', { skip: missing && `${missing} is not there` }, () => {
     await late.locator('.ended', { hasText: 'You cannot enter this room' }).waitFor();
     assert.match(await late.locator('.ended').textContent(), /ask for a new one/);
     assert.deepEqual(world.errors, []);
+  });
+
+  later('a phone that is given control presents by touch; the others keep their panes and sizes', async () => {
+    const room = await world.newRoom();
+    const [wide, phone] = sizes.map(([, options]) => options);
+    const one = await enter(`rooms/${room}`, 'Dr Ann', wide);
+    await says(one, /^Presenting/);
+    const two = await enter(`rooms/${room}`, 'Ben', phone);
+    const three = await enter(`rooms/${room}`, 'Cem', wide);
+    await Promise.all([one, two, three].map((page) => full(page)));
+    const panes = (page) =>
+      page.evaluate(() =>
+        [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => {
+          const { width, height } = pane.getBoundingClientRect();
+          return [pane.dataset.view, Math.round(width), Math.round(height)].join();
+        }),
+      );
+    const before = await Promise.all([one, three].map(panes));
+    await open(one);
+    await row(one, 'Ben').getByRole('button', { name: 'Give control to Ben' }).click();
+    await says(two, /^Presenting/);
+    await says(three, /^Following Ben/);
+    await one.keyboard.press('Escape');
+
+    const shown = await matrix(two, 1);
+    const box = await two.locator('#picture-1').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const session = await two.context().newCDPSession(two);
+    const touch = (type, touchPoints) => session.send('Input.dispatchTouchEvent', { type, touchPoints });
+    await touch('touchStart', [{ x, y, id: 0 }]);
+    for (let step = 1; step <= 6; step++) await touch('touchMove', [{ x: x + 15 * step, y, id: 0 }]);
+    await touch('touchEnd', []);
+    await ask(
+      () => matrix(two, 1),
+      (now) => now !== shown,
+    );
+    for (const page of [one, three]) await showsAs(page, two);
+    assert.deepEqual(await Promise.all([one, three].map(panes)), before);
+    assert.deepEqual(await axe(two), []);
+    await shoot(two, 'roster-phone-presents');
+    await open(two);
+    const targets = await two
+      .locator('.room-members button:visible, .room-actions button:visible')
+      .evaluateAll((buttons) =>
+        buttons
+          .map((button) => [button.textContent.trim(), button.getBoundingClientRect()])
+          .filter(([, { width, height }]) => width < 44 || height < 44),
+      );
+    assert.deepEqual(targets, []);
+    await shoot(two, 'roster-phone-roster');
+    await open(one);
+    await action(one, 'Take control').click(); // the role of presenter takes it back
+    await says(one, /^Presenting/);
+    await says(two, /^Following Dr Ann/);
+    await Promise.all([one, two, three].map((page) => page.context().close()));
   });
 });

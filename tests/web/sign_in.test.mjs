@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
+import { full, later, missing, shoot, startWorld } from './browser.mjs';
 
 const wide = { viewport: { width: 1440, height: 900 } };
 const password = 'correct horse 7';
@@ -139,6 +139,33 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     );
     await page.keyboard.press('Escape');
     await guest.context().close();
+  });
+
+  later('a guest by a link for one person has a second tab; another browser is told in words', async () => {
+    const link = await page.evaluate(async (id) => {
+      const body = JSON.stringify({ role: 'observer', expires_s: 3600, one_use: true, guests: true });
+      const answer = await fetch(`/api/v1/rooms/${id}/links`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body });
+      return (await answer.json()).token;
+    }, room);
+    const address = `rooms/${room}#link=${link}`;
+    const comeIn = async (on) => {
+      await on.fill('#guest-name', 'Prof. Lind');
+      await on.keyboard.press('Enter');
+    };
+    const first = await visit(address);
+    await comeIn(first);
+    await full(first);
+    const second = await first.context().newPage();
+    await second.goto(`${world.daemon.url}/${address}`);
+    await comeIn(second);
+    await full(second);
+    assert.equal(await first.locator('.ended').count(), 0, 'the first tab stays');
+    const other = await visit(address);
+    await comeIn(other);
+    await other.locator('.ended', { hasText: 'the link was for one person and has been used: ask for one of your own' }).waitFor();
+    assert.deepEqual(await axe(other), []);
+    await shoot(other, 'sign-in-link-used');
+    await Promise.all([first, other].map((one) => one.context().close()));
   });
 
   it('a display comes in by a link of the role wall, without signing in', async () => {

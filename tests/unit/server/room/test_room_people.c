@@ -274,6 +274,34 @@ static void a_guest_looks_points_and_writes_as_the_link_says(void **state)
     assert_int_equal(fake_n_heard(&ben, "problem"), 2);
 }
 
+/* Says hello with a link as a guest of this browser. */
+static void by_link_of(struct fake_page *page, const char *token, const char *browser)
+{
+    char more[140];
+    (void)snprintf(more, sizeof more, ",\"link\":\"%s\",\"name\":\"Gus\",\"person\":\"%s\"", token, browser);
+    say_hello(page, &nobody, more);
+}
+
+static void a_guests_link_for_one_seats_each_tab_of_that_browser_and_tells_others_why_not(void **state)
+{
+    static const char used[] = "the link was for one person and has been used: ask for one of your own";
+    struct problem problem = { 0 };
+    const struct room_link wanted = {
+        .role = WIRE_MEMBER_ROLE_REVIEWER, .expires_s = 3600, .allows_guests = true, .is_one_use = true
+    };
+    char token[33];
+    (void)state;
+    assert_true(room_link_make(fake.room, &wanted, fake.now_us, token, &problem));
+    by_link_of(&ann, token, "0123");
+    by_link_of(&ben, token, "0123"); /* a second tab */
+    assert_string_equal(of_member(&ben, "m1", "is_guest"), "true");
+    assert_string_equal(of_member(&ben, "m2", "is_guest"), "true");
+    by_link_of(&cem, token, "4567");
+    expect_refused(&cem, "", used);
+    by_link_of(&dee, token, ""); /* a browser that keeps nothing */
+    expect_refused(&dee, "", used);
+}
+
 static void a_guest_comes_back_by_its_seat_while_guests_may(void **state)
 {
     char token[33], seat[200];
@@ -567,6 +595,7 @@ int main(void)
         PEOPLE_TEST(who_comes_by_an_observers_link_is_an_observer),
         PEOPLE_TEST(an_unknown_link_tells_no_more_than_a_closed_room),
         PEOPLE_TEST(a_guest_looks_points_and_writes_as_the_link_says),
+        PEOPLE_TEST(a_guests_link_for_one_seats_each_tab_of_that_browser_and_tells_others_why_not),
         PEOPLE_TEST(a_guest_comes_back_by_its_seat_while_guests_may),
         PEOPLE_TEST(a_wall_looks_has_no_name_in_attendance_and_no_seat),
         PEOPLE_TEST(a_link_tells_who_made_it_and_its_end_can_put_out_who_came_by_it),
