@@ -1,4 +1,4 @@
-// What a person waits for while they type into the search of the start page, on a server with 2,000 plans in 40 folders and 300 rooms:
+// The wait of a person who types into the search of the start page, on a server with 2,000 plans in 40 folders and 300 rooms:
 // POST /plans/search with its answer read, by texts that many plans fit, that one fits and that none does.
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -14,7 +14,13 @@ const folders = Array.from({ length: nFolders }, (_, i) => join(root, `ward-${i 
 for (let i = 0; i < nPlans; i++) {
   const at = join(folders[i % nFolders], `case-${i}`);
   mkdirSync(at, { recursive: true });
-  const plan = { format: 'beamroom-plan', version: 1, name: `Head ${i}`, note: `Made up, series ${i % 97}`, images: [{ id: 'ct', path: 'ct.nii' }] };
+  const plan = {
+    format: 'beamroom-plan',
+    version: 1,
+    name: `Head ${i}`,
+    note: `Made up, series ${i % 97}`,
+    images: [{ id: 'ct', path: 'ct.nii' }],
+  };
   writeFileSync(join(at, 'plan.json'), JSON.stringify(plan));
 }
 const daemon = await startDaemon({ plans: folders, args: ['--stub'] });

@@ -1,4 +1,4 @@
-// What a room is called: the name that it was given, else that of its plan and of its first day.
+// The name of a room: the one that it was given, else that of its plan and of its first day.
 import { signal } from '../../lib/signals-core.js';
 import { roomName } from '../parts/when.js';
 

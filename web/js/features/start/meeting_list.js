@@ -101,7 +101,7 @@ const arrow = (isUp) => html`<span class=${isUp ? 'turned' : ''}>${icon('chevron
 
 const states = { running: say.runs, over: say.isOver };
 
-/** What can be done with a meeting that is not over, by whom it lets. */
+/** The buttons of a meeting that is not over, for whoever may edit it. */
 function acts({ state, may }, form, open) {
   if (!may.edit || state === 'over') return nothing;
   return html`<div class="meeting-acts"><button aria-expanded=${form === 'case'} @click=${open('case')}>${icon('plus', 12)}<span>${say.addCase}</span></button>
@@ -109,7 +109,7 @@ function acts({ state, may }, form, open) {
     <button class="ghost" aria-expanded=${form === 'meeting'} @click=${open('meeting')}>${say.nameAndTime}</button><span class="note">${say.nextTakesAlong}</span></div>`;
 }
 
-/** Of a meeting that has begun. */
+/** The way to the minutes of a meeting that has begun. */
 const minutesLink = ({ id, name, state }) =>
   state === 'planned'
     ? nothing

@@ -73,7 +73,7 @@ export class MeetingsState {
     if (!isOpen) void this.#list();
   }
 
-  /** What a meeting is asked, as its links are. */
+  /** Asks the meeting something, as about its links. */
   call(id, method, path, body) {
     return this.#api.call(method, `meetings/${id}${path}`, { body });
   }
