@@ -62,7 +62,7 @@ export async function startDaemon({ plans = [demo], args = [], data: given, cwd,
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** What the promise comes to, or false when it has not within that time. The timer does not hold up the end of the tests. */
+/** Result of the promise, or false when it has not within that time. The timer does not hold up the end of the tests. */
 export const within = (ms, promise) => Promise.race([promise, new Promise((done) => setTimeout(done, ms, false).unref())]);
 
 /** Asks until the answer suits, and returns it. A minute is long, as machines may be slow and busy; then the wait itself fails. */

@@ -1,9 +1,10 @@
-// The right column of a wall: the legend of the dose, the regions that are shown, the value at the crosshair, who is here.
+// The right column of a wall: the legend of the dose, the colours of a check, the regions that are shown, the value at the crosshair, who is here.
 import { html, nothing } from '../../lib/lit-html.js';
 import { legendRows } from '../features/dose/legend_rows.js';
 import { valueWords } from '../features/dose/dose_probe.js';
 import { ofFits } from '../features/fits/feature.js';
 import { ownRegions } from '../room/identity.js';
+import { isInSpace } from '../room/kinds.js';
 import { crosshair } from '../room/plan.js';
 import { letters } from '../pane/letters.js';
 import { number } from '../parts/format.js';
@@ -41,6 +42,13 @@ function legend(world) {
   if (!rows.length) return nothing;
   const mark = ofFits(room)?.wordMark(world, ['dose']) ?? nothing;
   return html`${mark === nothing ? nothing : html`<p class="wall-mark">${mark}</p>`}${rows.map(legendRow)}`;
+}
+
+/** The colours of the segmentation check, while a slice shows it. */
+function check({ room }) {
+  const isShown = room.scene.value.check.visible && room.plan.value.regions.length > 0;
+  if (!isShown || !room.views.some((view) => view.isOpen.value && !isInSpace(view.kind))) return nothing;
+  return html`<section class="wall-check"><h2>${say.check}</h2><ul><li><i class="wall-swatch beyond"></i><span>${say.beyond}</span></li><li><i class="wall-swatch within"></i><span>${say.within}</span></li></ul></section>`;
 }
 
 function regions({ room }) {
@@ -83,5 +91,5 @@ function here({ room }) {
 export function wallColumn(world) {
   const { room } = world;
   if (!room.plan.value || !room.scene.value) return nothing;
-  return html`${legend(world)}${regions(world)}${atCrosshair(world)}${here(world)}`;
+  return html`${legend(world)}${check(world)}${regions(world)}${atCrosshair(world)}${here(world)}`;
 }
