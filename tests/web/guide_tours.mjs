@@ -430,13 +430,13 @@ export const tours = {
   async keys({ room, keys, look }) {
     const page = await room('phantom');
     await button(page, 'Help').click();
-    await page.locator('.help dl:not(.help-look)').waitFor();
+    await page.locator('.help dl:not(.look-choice)').waitFor();
     await look(page);
     keys(
       await page.locator('.help').evaluate((list) => {
         const text = (name) => [...list.querySelectorAll(name)].map((element) => element.textContent.trim());
         const commands = text('.help-keys li > span').map((what, at) => [text('.help-key')[at].split(/\s+/).join(', '), what]);
-        return [...commands, ...text('dl:not(.help-look) dt').map((key, at) => [key, text('dl:not(.help-look) dd')[at]])];
+        return [...commands, ...text('dl:not(.look-choice) dt').map((key, at) => [key, text('dl:not(.look-choice) dd')[at]])];
       }),
     );
   },
