@@ -183,6 +183,7 @@ describe('signing in with Firefox', { skip: missing && `${missing} is not there`
     }
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => location.pathname === '/');
+    await says(page, 'body', /Signed in as/); // all its modules are there: none is cut off by what follows
     await page.goto(`${world.daemon.url}/`);
     await says(page, 'body', /Signed in as/);
     await shoot(page, 'signed-in');
