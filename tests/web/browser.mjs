@@ -2,7 +2,7 @@
 import { existsSync, mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { it } from 'node:test';
-import { bin, call, demo, openPlan, startDaemon } from '../api/daemon.mjs';
+import { bin, call, demo, openPlan, sleep, startDaemon } from '../api/daemon.mjs';
 
 // Chromium's headless shell opens a page with half of the work of the whole browser.
 const headlessShell = '/usr/bin/chromium-headless-shell';
@@ -22,6 +22,14 @@ const flags = [
 const long = process.env.LONG_TESTS ?? '';
 /** Whether a case is to be run now. @param {boolean} isQuick it is one of those without LONG_TESTS */
 export const isDue = (isQuick) => long === '1' || isQuick === (long !== 'rest');
+/** SLOW_PARTS: ms that every module and style sheet waits in all pages, as behind a slow line; then nothing may be lost that a quick hand does. */
+const slowPartsMs = Number(process.env.SLOW_PARTS ?? 0);
+/** @param {import('playwright-core').Page} page @param {number} ms */
+export const slowParts = (page, ms) =>
+  page.route(/\/page\/|\.css$/, async (route) => {
+    await sleep(ms);
+    await route.continue().catch(() => {}); // the page may be closed by now
+  });
 /** A test that is run without LONG_TESTS. */
 export const once = long === 'rest' ? () => {} : it;
 /** A test that is run with LONG_TESTS alone. */
@@ -60,6 +68,7 @@ export async function startWorld({ plans = [], args = [], data, folders } = {}) 
       const context = await browser.newContext({ viewport: { width: 1600, height: 1000 }, ...options });
       context.setDefaultTimeout(60000); // waits for states, however busy the machine
       const page = await context.newPage();
+      if (slowPartsMs) await slowParts(page, slowPartsMs);
       page.on('pageerror', (error) => errors.push(error.message));
       page.on('console', (message) => /Content Security Policy/.test(message.text()) && refused.push(message.text()));
       await page.goto(`${base}/${address}`);

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, once, shoot, slowParts, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 
@@ -18,9 +18,10 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await world?.stop();
   });
 
-  const open = async (options = sizes.wide, room = null) => {
+  const open = async (options = sizes.wide, room = null, slowMs = 0) => {
     const id = room ?? (await world.newRoom());
     const page = await world.newPage('', options);
+    if (slowMs) await slowParts(page, slowMs);
     await page.goto(`${world.daemon.url}/rooms/${id}`);
     for (const view of options === sizes.phone ? [1] : [1, 2, 3, 4]) await full(page, view);
     const measures = async () => (await world.scene(id)).measures;
@@ -284,7 +285,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     later(
       `${size}: axe-core finds nothing and no text lies over another while something is measured${options.hasTouch ? ', with fingers' : ''}`,
       async () => {
-        const { page, room, comes } = await open(options);
+        const { page, room, comes } = await open(options, null, 500); // a quick hand draws before the tool's code is there
         const [, , S] = crosshairOf(await world.scene(room));
         /** Until the picture has the size of its pane. */
         const sized = (view) =>

@@ -167,10 +167,10 @@ export class PaneMeasures {
     return this.#isTool;
   }
 
-  /** Enter sets a point at the crosshair, Backspace takes the last one back. */
-  key({ key }, at) {
+  /** Enter sets a point at the crosshair, Backspace takes the last one back. @param {number[]} mark where the crosshair was when the key was pressed */
+  key({ key }, at, mark = crosshair(this.#scene)) {
     if (!this.#isTool || !['Enter', 'Backspace'].includes(key)) return null;
-    if (key === 'Enter') return () => this.#addPoint(nearestIn(this.#plane, crosshair(this.#scene)), at);
+    if (key === 'Enter') return () => this.#addPoint(nearestIn(this.#plane, mark), at);
     return this.#draft
       ? () => this.#set(this.#draft.points.length > 1 ? { ...this.#draft, points: this.#draft.points.slice(0, -1) } : null)
       : null;
