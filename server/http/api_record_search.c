@@ -54,7 +54,8 @@ static bool is_found(const struct search *search, const cJSON *row)
 {
     static const char *const fields[] = { "id",        "room",    "plan",  "author_name",
                                           "plan_name", "patient", "label", "decision" };
-    if (search->kind[0] && strcmp(search->kind, json_text(row, "kind")) != 0)
+    const char *kind = json_text(row, "kind"); /* NULL: there was no memory for the row */
+    if (!kind || (search->kind[0] && strcmp(search->kind, kind) != 0))
         return false;
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
         if (has_text(json_text(row, fields[i]), search->text))

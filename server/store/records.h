@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "server/store/store_rows.h"
 
-/* What a list says of a record, as an expression of SQL over its columns item and body: {decision, plan_name, patient,
+/* SQL over the columns item and body of a record for what lists say of it: {decision, plan_name, patient,
  * label, approval}, null where it is not known. Step 13 of the schema has it, so it stays as it is. */
 #define RECORD_PLACE_IN_PLAN(name) \
     "max(0, CASE json_type(body, '$.kept.plan." name "') WHEN 'integer' THEN json_extract(body, '$.kept.plan." name \
