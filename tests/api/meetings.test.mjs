@@ -416,8 +416,9 @@ describe('A meeting of three cases', { concurrency: false }, () => {
       (word) => word === 'accept',
     );
     await until(
-      () => casesOnDisk(meeting, join(folder, 'data')), // who is there is written a moment later
-      ([, , third]) => ['Pat Lee', 'Rae', 'Dr. Guest'].every((name) => JSON.stringify(third.stays ?? []).includes(name)),
+      () => casesOnDisk(meeting, join(folder, 'data')), // who is there and what was decided is written a moment later
+      ([, , third]) =>
+        third.decision === 'accept' && ['Pat Lee', 'Rae', 'Dr. Guest'].every((name) => JSON.stringify(third.stays ?? []).includes(name)),
     );
     daemon.child.kill('SIGKILL');
     await new Promise((done) => daemon.child.on('exit', done));
