@@ -264,6 +264,7 @@ describe('beamroom info', () => {
       'preferences',
       'report',
       'patients',
+      'statement',
       'treatment_plans',
       'shown_patient',
       'shown_plan',
