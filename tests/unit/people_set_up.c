@@ -86,3 +86,19 @@ void expect_refused(const struct fake_page *page, const char *code, const char *
     assert_string_equal(heard(page, "bye", "code"), code);
     assert_string_equal(heard(page, "bye", "reason"), reason);
 }
+
+const char *of_member(const struct fake_page *page, const char *id, const char *field)
+{
+    static char text[200];
+    cJSON *message = fake_heard(page, "members"), *row;
+    text[0] = 0;
+    cJSON_ArrayForEach(row, cJSON_GetObjectItem(message, "members"))
+    {
+        if (strcmp(json_text(row, "id"), id) != 0)
+            continue;
+        const char *value = json_text(row, field);
+        (void)snprintf(text, sizeof text, "%s", value ? value : json_flag(row, field, false) ? "true" : "");
+    }
+    cJSON_Delete(message);
+    return text;
+}

@@ -17,4 +17,6 @@ void by_link(struct fake_page *page, const struct identity *who, const char *tok
 void make_link(enum wire_member_role role, bool allows_guests, char token[33]);
 /* The page's member. Good until the next call. */
 const char *me(const struct fake_page *page);
+/* A field of the member with this id in the newest list, "" for none; "true" of a bool. */
+const char *of_member(const struct fake_page *page, const char *id, const char *field);
 void expect_refused(const struct fake_page *page, const char *code, const char *reason);

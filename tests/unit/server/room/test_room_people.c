@@ -10,23 +10,6 @@ static bool patch(const char *json, struct problem *problem)
     return is_done;
 }
 
-/* A field of the member with this id in the newest list, "" for none; "true" of a bool. */
-static const char *of_member(const struct fake_page *page, const char *id, const char *field)
-{
-    static char text[200];
-    cJSON *message = fake_heard(page, "members"), *row;
-    text[0] = 0;
-    cJSON_ArrayForEach(row, cJSON_GetObjectItem(message, "members"))
-    {
-        if (strcmp(json_text(row, "id"), id) != 0)
-            continue;
-        const char *value = json_text(row, field);
-        (void)snprintf(text, sizeof text, "%s", value ? value : json_flag(row, field, false) ? "true" : "");
-    }
-    cJSON_Delete(message);
-    return text;
-}
-
 /* ---- closed ----------------------------------------------------------------------------------------------------- */
 
 static void a_room_is_closed_to_all_but_its_owner(void **state)
