@@ -19,7 +19,6 @@ import { addressOfPlace, placeOfAddress, places } from './places.js';
 import { planList } from './plan_list.js';
 import { refusalOf } from './plan_row.js';
 import { reportLines } from '../../parts/report.js';
-import { openDroppedSnapshot } from '../report/later_snapshots.js';
 import { dropZone, listenDrops } from './upload.js';
 
 // what main.js gives the page, and nothing else needs
@@ -38,7 +37,7 @@ export function startPage(host, world) {
   const unmount = mount(host, () => page(state, uploads, meetings, world));
   const unkey = listenForSearch(host);
   const unwatch = watchDialog(host, state);
-  const unlisten = listenDrops(uploads, (file) => openDroppedSnapshot(world.api, file, world.enter));
+  const unlisten = listenDrops(uploads, (file) => openSnapshot(world, file));
   const unaddress = effect(() => keepInAddress(state));
   let newest = 0;
   const unscroll = effect(() => {
@@ -65,6 +64,12 @@ export function startPage(host, world) {
     unaddress();
     unmount();
   };
+}
+
+/** A snapshot that was dropped on the page. */
+async function openSnapshot({ api, enter }, file) {
+  const { openDroppedSnapshot } = await import('../report/later_snapshots.js');
+  return openDroppedSnapshot(api, file, enter);
 }
 
 const look = later(() => import('../../shell/look_choice.js'), 'js/shell/look.css');
