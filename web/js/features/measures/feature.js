@@ -13,7 +13,7 @@ const sameMm = 0.05;
 const hasMeasures = (scene) => Object.keys(scene?.measures ?? {}).length > 0;
 
 /**
- * What a quick hand does between the choice of the tool and the arrival of its code is held and done then, at the same places of the patient: not
+ * Acts of a quick hand between the choice of the tool and the arrival of its code are held and done then, at the same places of the patient: not
  * once another plane is in the picture. Until then nothing else takes it: a line that is drawn moves no crosshair, Enter maximises no pane.
  */
 function held(part, { room, ui, box, pointAt }, view) {
