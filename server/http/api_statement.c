@@ -134,6 +134,15 @@ static bool sign(struct api *api, const struct call *call, const char *plan_id, 
     return true;
 }
 
+/* It is a planner's to state, who may read whom a plan is of. */
+static bool may_state(struct api *api, const struct call *call, struct problem *problem)
+{
+    return api_may_name(api, call, call->ids[0], problem) &&
+           (api_access_to_plan(api, call, ACCESS_CLOSE, call->ids[0]) ||
+            problem_set(problem, PROBLEM_FORBIDDEN, "", "role",
+                        "this needs the right \"%s\", which you do not have here", access_rights[ACCESS_CLOSE].word));
+}
+
 static void put(void *context, const struct problem *problem)
 {
     if (problem)
@@ -150,7 +159,7 @@ void api_plan_statement(struct api *api, struct call *call)
     cJSON *body, *statement = NULL;
     if (!api_find_plan(api, call, &plan))
         return;
-    if (!api_may_name(api, call, call->ids[0], &problem)) {
+    if (!may_state(api, call, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
@@ -175,7 +184,7 @@ void api_plan_statement_withdraw(struct api *api, struct call *call)
     struct problem problem = { 0 };
     if (!api_find_plan(api, call, &plan))
         return;
-    if (api_may_name(api, call, call->ids[0], &problem)) {
+    if (may_state(api, call, &problem)) {
         if (!net_statement_on(api->net, call->ids[0]))
             problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "nobody has stated anything of whom this plan is of");
         else if (net_statement_put(api->net, call->ids[0], NULL, &call->identity, name_of(api, call), call->client, put,

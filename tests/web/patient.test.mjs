@@ -26,6 +26,7 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     putPlan(join(folder, 'case-2'), quirin, { ...second, date: '20261012' });
     putDose(join(folder, 'case-2'), quirin, { uid: '1.2.84', plan: '1.2.74', file: 'dose2.dcm' });
     putDose(join(folder, 'case-2'), quirin, { uid: '1.2.85', file: 'dose3.dcm' });
+    putWhole(join(folder, 'nameless'), { id: '', name: '', birthDate: '' });
     world = await startWorld({ plans: [folder] });
     page = await world.newPage(`rooms/${await world.newRoom('case-1')}`, { viewport: { width: 1440, height: 900 } });
     await full(page, 2);
@@ -111,6 +112,59 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     await shoot(page, 'patient-compared');
     await page.getByRole('button', { name: 'Mask them again' }).click();
     assert.ok(!(await page.evaluate(() => document.documentElement.outerHTML)).match(/Quirin|Ottilie|77-30419/));
+  });
+
+  it('who compares them may say that they are one person: their parts are used, and it is withdrawn by the bar', async () => {
+    const compare = page.getByRole('button', { name: 'Compare identities' });
+    await compare.click();
+    await page.getByRole('button', { name: 'They are one person …' }).click();
+    await page.getByLabel(/Why they are one person/).fill('The second name is that of her marriage');
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'patient-one-form');
+    await page.getByRole('button', { name: 'They are one person', exact: true }).click();
+    const bar = page.locator('.fit-bar', { hasText: 'count as of one person' });
+    await bar.waitFor();
+    assert.match(await bar.textContent(), /The second name is that of her marriage/);
+    await until(
+      () => compare.count(),
+      (n) => n === 0,
+    ); // prettier-ignore
+    assert.equal(await page.locator('.not-this-patient').count(), 0);
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'patient-one');
+    await bar.getByRole('button', { name: 'Withdraw the statement' }).click();
+    await compare.waitFor();
+    await shows(page.locator('.not-this-patient').last(), 'O. M. …327');
+    await full(page, 2);
+  });
+
+  it('whom the plan is of is stated where the files do not say it, masked like any other, and withdrawn', async () => {
+    const own = await world.newPage(`rooms/${await world.newRoom('nameless')}`, { viewport: { width: 1280, height: 720 } });
+    await shows(own.locator('.banner .patient'), 'identity unknown');
+    await own.getByRole('tab', { name: 'Plan', exact: true }).click();
+    await own.getByRole('button', { name: 'State identity …' }).click();
+    for (const [label, text] of [
+      ['Family name', 'Winterstein'],
+      ['Given name', 'Ludmilla'],
+      ['Id', '61-20553'],
+      ['Born', '1949-02-28'],
+    ])
+      await own.getByLabel(label, { exact: true }).fill(text);
+    assert.deepEqual(await axe(own), []);
+    await shoot(own, 'patient-state');
+    await own.getByRole('button', { name: 'State it' }).click();
+    await shows(own.locator('.banner .patient-button'), 'L. W. …553');
+    await shows(own.locator('#tab-panel'), 'stated by');
+    assert.ok(!(await own.evaluate(() => document.documentElement.outerHTML)).match(/Ludmilla|Winterstein|61-20553|1949/));
+    assert.deepEqual(await axe(own), []);
+    await shoot(own, 'patient-stated');
+    await own.locator('.patient-button').click();
+    await own.getByRole('button', { name: 'Show to me' }).click();
+    await shows(own.locator('.patient-button'), 'WINTERSTEIN, Ludmilla');
+    await own.getByRole('button', { name: 'Mask it again' }).click();
+    await own.getByRole('button', { name: 'Withdraw the statement' }).click();
+    await shows(own.locator('.banner .patient'), 'identity unknown');
+    await own.context().close();
   });
 
   it('a snapshot has the name only when that is ticked, off each time', async () => {

@@ -36,6 +36,7 @@ const paths = {
   check: svg`<path d="m2.5 8.5 3.5 3.5 7.5-8"/>`,
   warning: svg`<path d="M8 1.8 15 14H1ZM8 6v4M8 12v.1"/>`,
   error: svg`<path d="M5.2 1.500h5.600l3.7 3.700v5.600l-3.7 3.700H5.200l-3.7-3.700V5.200ZM5.8 5.800l4.4 4.400M10.2 5.800l-4.4 4.4"/>`,
+  pencil: svg`<path d="m3 13 .8-3.200L10.500 3l2.500 2.500-6.800 6.700zM9 4.500 11.500 7"/>`,
   note: svg`<circle cx="8" cy="8" r="6.2"/><path d="M8 7.300v4M8 4.800v.1"/>`,
   image: svg`<rect x="1.8" y="2.5" width="12.4" height="11" rx="1.5"/><circle cx="5.5" cy="6" r="1.2"/><path d="m2 12 4-3.8 3 2.8 2-2 3 2.8"/>`,
   chevronDown: svg`<path d="m3.5 6 4.5 4.500L12.5 6"/>`,

@@ -93,6 +93,7 @@ export function readPlan(document) {
     trackClasses: readTracks(document.tracks),
     fits: document.fits ?? [],
     patients: document.patients ?? [],
+    statement: document.statement ?? null,
     shownPatient: document.shown_patient ?? null,
     shownPlan: document.shown_plan ?? null,
     treatmentPlans: document.treatment_plans ?? [],

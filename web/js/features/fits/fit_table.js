@@ -2,6 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { partOf } from './fits.js';
 import { comparison, isCompared, toggleComparison } from '../patient/patient_card.js';
+import { onePersonForm } from '../patient/statement.js';
 import { partsOfOthers, patientOf, shownPatient } from '../../room/identity.js';
 import { shownImage } from '../../room/plan.js';
 import { icon } from '../../parts/icons.js';
@@ -70,7 +71,7 @@ export function otherPatientsBar(world) {
     <p><b>${say.severalPatients({ n: plan.patients.length })}</b> ${label ? say.shownOfPlanNot(facts) : say.shownNot(facts)}</p>
     ${
       room.seesIdentity.value
-        ? html`<button aria-expanded=${isCompared(world)} @click=${() => void toggleComparison(world)}>${isCompared(world) ? say.maskThem : say.compareIdentities}</button>${comparison(world)}`
+        ? html`<button aria-expanded=${isCompared(world)} @click=${() => void toggleComparison(world)}>${isCompared(world) ? say.maskThem : say.compareIdentities}</button>${comparison(world)}${isCompared(world) ? onePersonForm(world) : nothing}`
         : nothing
     }</div>`;
 }

@@ -10,6 +10,12 @@ const card = later(() => import('./patient_card.js'), 'js/features/fits/fit.css'
 
 const unknown = html`<span class="patient-unknown dim" title=${say.unknownWhy({ why: unknownWords })}>${icon('note', 12)} <span>${say.unknown}</span></span>`;
 
+/** The mark of a patient whom a person has named, as the files do not. */
+const pencil = ({ statement: said }) =>
+  said?.state === 'used' && said.kind === 'identity'
+    ? html` <span class="dim" title=${say.statedBy({ by: said.by })}>${icon('pencil', 12)}</span>`
+    : nothing;
+
 /** The patient: "A. V. …417"; PHANTOM; identity unknown. */
 export function patientButton(world) {
   const { room, ui } = world;
@@ -20,12 +26,12 @@ export function patientButton(world) {
   if (!patient) return html`<span class="patient">${unknown}</span><i class="rule"></i>`;
   // without the right nothing opens
   if (!room.seesIdentity.value)
-    return html`<span class="patient masked"><b class="patient-name">${patient.masked}</b></span><i class="rule"></i>`;
+    return html`<span class="patient masked"><b class="patient-name">${patient.masked}${pencil(plan)}</b></span><i class="rule"></i>`;
   const shown = card.loaded.value?.shownIdentity(world);
   const idBorn = shown ? html`<span class="dim">${say.idBorn({ id: shown.id, date: dateWords(shown.birth) })}</span>` : nothing;
   return html`<span class="patient masked anchor"><button class="patient-button" aria-expanded=${ui.popover.value === 'patient'}
       title=${say.thePatient} @click=${() => ui.toggle('patient')}>
-      <b>${shown?.name ?? patient.masked}</b> ${icon(shown ? 'eye' : 'eyeOff', 12)}${idBorn}</button>
+      <b>${shown?.name ?? patient.masked}${pencil(plan)}</b> ${icon(shown ? 'eye' : 'eyeOff', 12)}${idBorn}</button>
       ${ui.popover.value === 'patient' ? card.draw(({ patientCard }) => patientCard(world)) : nothing}</span><i class="rule"></i>`;
 }
 
@@ -45,12 +51,14 @@ export function planName({ room, ui }) {
   return { name, place, menu: isOpen ? plans.draw(({ planMenu }) => planMenu({ room, ui })) : nothing };
 }
 
+const statement = later(() => import('./statement.js'), 'js/features/fits/fit.css');
 const isRejected = (treatment) => approvalOf(treatment)[1] === 'err';
 
-/** At first, where there are several; always where the shown one was rejected. */
+/** At first, where there are several; always where the shown one was rejected, or somebody has stated of whom the plan is. */
 export function planBar(world) {
   const plan = world.room.plan.value;
-  return several(plan) || plan?.treatmentPlans.some(isRejected) ? known(plans)?.plansBar(world) : nothing;
+  const bar = several(plan) || plan?.treatmentPlans.some(isRejected) ? known(plans)?.plansBar(world) : nothing;
+  return html`${plan?.statement ? known(statement)?.statementBar(world) : nothing}${bar}`;
 }
 
 const planIs = { ok: say.planApproved, warn: say.planUnapproved, err: say.planRejected, dim: say.planNotStated };

@@ -93,7 +93,7 @@ async function show(world) {
 
 /** Shows the identities of all patients of the folder, or hides them again. */
 export async function toggleComparison(world) {
-  if (compared.peek()) return void hide();
+  if (isCompared(world)) return void hide();
   const patients = await ask(world);
   hide();
   if (!patients) return;
@@ -124,7 +124,7 @@ export function comparison({ room }) {
     )}</tbody></table><p class="note">${say.alone({ n: shownMinutes })}</p>`;
 }
 
-export const isCompared = ({ room }) => compared.value?.room === room;
+export const isCompared = ({ room }) => compared.value?.room === room && compared.value.plan === room.plan.value;
 
 // ---- on a wall ------------------------------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
 import { choosePlan } from './plan_switch.js';
 import { dosesOf } from './plan_choice.js';
+import { identityForm, statedBy, statedRow } from './statement.js';
 
 function approvalCell(treatment) {
   const [word, kind, picture] = approvalOf(treatment);
@@ -45,7 +46,7 @@ export function planBlock(world) {
     treatment && [say.approval, approvalCell(treatment)],
     decision && [say.decided, decision],
     plan.treatmentPlans.length > 1 && [say.plans, planSelect(world, plan, treatment)],
-    patient && [say.identityFrom, say.fromFiles],
+    patient && [say.identityFrom, statedBy(plan) ? statedRow(world) : say.fromFiles],
   ].filter(Boolean);
-  return html`<section class="block"><h3>${say.patientAndPlan}</h3><dl>${rows.map(([name, value]) => html`<dt>${name}</dt><dd>${value}</dd>`)}</dl></section>`;
+  return html`<section class="block"><h3>${say.patientAndPlan}</h3><dl>${rows.map(([name, value]) => html`<dt>${name}</dt><dd>${value}</dd>`)}</dl>${patient || plan.isPhantom ? nothing : identityForm(world)}</section>`;
 }

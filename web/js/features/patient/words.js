@@ -13,4 +13,5 @@ export const say = sentences('patient', {
   planNotStated: 'Plan {plan}: approval not stated',
   planOf: 'plan {n} of {all}',
   switchPlan: 'Show another treatment plan',
+  statedBy: 'stated by {by}',
 });
