@@ -1,7 +1,7 @@
 // The user's guide (docs/guide) against the page: each of its tasks is done as the guide's pictures are made, every word that the guide has in bold
 // type was seen on the way, every picture it shows is one of these, and its list of keys is the page's.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -17,15 +17,17 @@ const plain = (text) => text.replace(/[\s\u00a0]+/g, ' ').toLowerCase();
 
 describe("the user's guide", { skip: missing && `${missing} is not there` }, () => {
   let world;
-  let plans;
+  let parent;
   before(async () => {
-    plans = mkdtempSync(join(tmpdir(), 'beamroom-guide-'));
+    parent = mkdtempSync(join(tmpdir(), 'beamroom-guide-'));
+    const plans = join(parent, 'plans'); // the page shows this name; the parent's random letters may look like a program's
+    mkdirSync(plans);
     guidePlans(plans);
     world = await startWorld({ plans: [plans] });
   });
   after(async () => {
     await world?.stop();
-    rmSync(plans, { recursive: true, force: true });
+    rmSync(parent, { recursive: true, force: true });
   });
 
   it('can be followed, and says what the page says', async () => {

@@ -39,6 +39,7 @@ async function pageWith(folder) {
   ]);
   const page = join(folder, 'page');
   cpSync(web, page, { recursive: true, filter: (path) => !/\.(br|gz)$/.test(path) });
+  cpSync('web/display.html', join(page, 'display.html')); // a wall by its modules, as modules.html is the page
   const languages = join(page, 'js/languages');
   writeFileSync(join(languages, `${language}.js`), `export default ${JSON.stringify(Object.fromEntries(bracketed))};\n`);
   const index = join(languages, 'index.js');
