@@ -66,6 +66,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     await full(page);
     const tree = page.locator('[role="tree"]');
     const current = () => page.evaluate(() => document.activeElement.getAttribute('aria-activedescendant'));
+    await page.locator('[data-key^="tracks:"]').first().waitFor(); // its rows come later
     await tree.focus();
     assert.equal(await current(), 'row-section:images');
     await page.keyboard.press('End');
