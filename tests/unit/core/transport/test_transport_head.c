@@ -154,7 +154,7 @@ static void compare_axis(const struct volume *theirs, const struct volume *ours,
     double n = 0;
     *mean = *most = 0;
     for (double depth_cm = 1; depth_cm <= deepest_cm; depth_cm += .5, n++) {
-        double a, b;
+        double a = 0, b = 0;
         struct vec3 at = vec3_add(skin, vec3_scale(along, 10 * depth_cm));
         assert_true(volume_sample(theirs, at, &a) && volume_sample(ours, at, &b));
         *mean += b * scale / a - 1;
