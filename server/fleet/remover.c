@@ -31,7 +31,8 @@ static int remove_tree(const struct remover *remover, char *path)
     FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
     if (!tree)
         return errno;
-    for (const FTSENT *entry; !atomic_load(&remover->is_stopping) && (entry = fts_read(tree));) {
+    /* Read before the question: fts_close leaks the roots of a tree of which nothing was read. */
+    for (const FTSENT *entry; (entry = fts_read(tree)) && !atomic_load(&remover->is_stopping);) {
         if (entry->fts_info == FTS_D)
             continue; /* it is visited again as FTS_DP when it is empty */
         int gone = entry->fts_info == FTS_DP || entry->fts_info == FTS_DNR ? rmdir(entry->fts_accpath)
