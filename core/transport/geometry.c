@@ -96,17 +96,25 @@ static uint8_t block_material(const struct geometry *geometry, const int32_t blo
     return first;
 }
 
-static bool make_blocks(struct geometry *geometry, struct error *err)
+static bool goes_on(const atomic_bool *cancel, struct error *err)
+{
+    return !(cancel && atomic_load(cancel)) || error_set(err, ERROR_CANCELLED, "the simulation was cancelled");
+}
+
+static bool make_blocks(struct geometry *geometry, const atomic_bool *cancel, struct error *err)
 {
     const int32_t *n = geometry->n_blocks;
     geometry->blocks = mem_array((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 1, (uint64_t)1 << 30, err);
     if (!geometry->blocks)
         return false;
     uint8_t *at = geometry->blocks;
-    for (int32_t k = 0; k < n[2]; k++)
+    for (int32_t k = 0; k < n[2]; k++) {
+        if (!goes_on(cancel, err))
+            return false;
         for (int32_t j = 0; j < n[1]; j++)
             for (int32_t i = 0; i < n[0]; i++)
                 *at++ = block_material(geometry, (int32_t[]){ i, j, k });
+    }
     return true;
 }
 
@@ -177,22 +185,25 @@ static void add_voxel(struct geometry *geometry, const uint32_t voxel[3])
             }
 }
 
-static bool measure_matter(struct geometry *geometry, struct error *err)
+static bool measure_matter(struct geometry *geometry, const atomic_bool *cancel, struct error *err)
 {
     geometry->matter = mem_array(grid_n_voxels(&geometry->cells), sizeof(float), UINT64_MAX, err);
     if (!geometry->matter)
         return false;
     const uint8_t *at = geometry->voxels;
-    for (uint32_t k = 0; k < geometry->n[2]; k++)
+    for (uint32_t k = 0; k < geometry->n[2]; k++) {
+        if (!goes_on(cancel, err))
+            return false;
         for (uint32_t j = 0; j < geometry->n[1]; j++)
             for (uint32_t i = 0; i < geometry->n[0]; i++, at++)
                 if (*at != 0)
                     add_voxel(geometry, (uint32_t[]){ i, j, k });
+    }
     return true;
 }
 
 bool geometry_init(struct geometry *geometry, const struct grid *grid, const uint8_t *voxels, const struct grid *cells,
-                   double cell_mm, struct error *err)
+                   double cell_mm, const atomic_bool *cancel, struct error *err)
 {
     *geometry = (struct geometry){ .voxels = voxels };
     if (!cells && !(cell_mm >= 1 && cell_mm <= 50))
@@ -204,7 +215,7 @@ bool geometry_init(struct geometry *geometry, const struct grid *grid, const uin
         geometry->cells = *cells;
     else if (!own_cells(geometry, cell_mm, err))
         return false;
-    if (aim_cells(geometry, err) && make_blocks(geometry, err) && measure_matter(geometry, err))
+    if (aim_cells(geometry, err) && make_blocks(geometry, cancel, err) && measure_matter(geometry, cancel, err))
         return true;
     geometry_finish(geometry);
     return false;

@@ -1,6 +1,7 @@
 #pragma once
 /* Materials in space, and the cells of a tally, in one frame: axes of the voxels, cm, origin in a corner of a box
  * around the matter. Built once a run, then constant: any thread. */
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -33,10 +34,11 @@ struct geometry {
  *
  *   voxels   [k][j][i] as grid, materials from 1 to n_materials, 0 air
  *   cells    a grid with the axes of the voxels' grid, either way along each; NULL: cells of cell_mm over the matter
+ *   cancel   NULL: not wanted
  *   errors   ERROR_RANGE axes that are not at right angles, or not those of the voxels; no matter at all; ERROR_LIMIT
- *            more than GEOMETRY_MAX_CELLS cells; ERROR_MEMORY */
+ *            more than GEOMETRY_MAX_CELLS cells; ERROR_MEMORY; ERROR_CANCELLED, within a slice of voxels */
 NODISCARD bool geometry_init(struct geometry *geometry, const struct grid *grid, const uint8_t *voxels,
-                             const struct grid *cells, double cell_mm, struct error *err);
+                             const struct grid *cells, double cell_mm, const atomic_bool *cancel, struct error *err);
 void geometry_finish(struct geometry *geometry);
 
 /* A patient point in the box's frame, and a direction. */

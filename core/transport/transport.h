@@ -7,8 +7,9 @@
 #include "core/transport/phase_space.h"
 #include "core/volume/volume.h"
 
-#define TRANSPORT_MODEL "1" /* changes with whatever changes a number */
+#define TRANSPORT_MODEL "2" /* changes with whatever changes a number */
 #define TRANSPORT_MAX_HISTORIES UINT64_C(100000000000)
+#define TRANSPORT_BATCH UINT64_C(1048576) /* histories of a step that a cancelled one loses at most */
 
 enum transport_quantity {
     TRANSPORT_BORON,        /* Gy per ppm of boron-10 */
@@ -28,13 +29,14 @@ struct transport_input {
     size_t n_materials; /* 1 to MATERIAL_MAX */
     const struct phase_space *beam;
     struct vec3 aperture_lps_mm, direction_lps; /* centre of the aperture plane; where the beam goes */
-    uint64_t n_histories, seed;
+    uint64_t n_histories;                       /* of transport_run */
+    uint64_t seed;
     const struct grid *cells; /* NULL: cells of cell_mm over the matter */
     double cell_mm;
     bool is_whole_cells; /* fluences over whole cells, air included, as seraMC does; else in what is not air */
     int n_threads;
     const atomic_bool *cancel;                     /* NULL: not wanted */
-    void (*progress)(void *context, double share); /* NULL: not wanted; on the caller's thread */
+    void (*progress)(void *context, double share); /* of a step; NULL: not wanted; on the caller's thread */
     void *context;
 };
 
@@ -54,11 +56,28 @@ struct transport_result {
     struct transport_balance balance;
 };
 
-/* The whole input is checked before memory is taken.
+/* A simulation that goes on: histories are added step by step, looked at in between, and begun anew for another pose of
+ * the beam without what does not depend on the pose. Owned: create, destroy. One thread at a time, which starts
+ * n_threads and joins them before it returns. Equal steps give equal bytes, whatever n_threads is. */
+struct transport_run;
+
+/* The whole input is checked before memory is taken. What the input points to is the caller's, and lives and does not
+ * change as long as the run does.
  *
- *   errors   ERROR_RANGE, ERROR_LIMIT: what, where, expected; ERROR_MEMORY; ERROR_CANCELLED, once histories
- *            run within 256 of them
- *   thread   any; starts n_threads, which are joined before it returns
- *   returns  equal bytes for equal input, whatever n_threads is */
+ *   errors   ERROR_RANGE, ERROR_LIMIT: what, where, expected; ERROR_MEMORY; ERROR_CANCELLED */
+NODISCARD struct transport_run *transport_run_create(const struct transport_input *input, struct error *err);
+void transport_run_destroy(struct transport_run *run); /* NULL: nothing */
+
+/* Another pose, without histories. ERROR_RANGE: as before. */
+NODISCARD bool transport_run_aim(struct transport_run *run, struct vec3 aperture_lps_mm, struct vec3 direction_lps,
+                                 struct error *err);
+/* Adds histories. ERROR_CANCELLED, within 256 histories of each thread: what the run had before stays, and as many
+ * whole batches of TRANSPORT_BATCH as were done. ERROR_RANGE: none, or beyond TRANSPORT_MAX_HISTORIES in all */
+NODISCARD bool transport_run_step(struct transport_run *run, uint64_t n_histories, struct error *err);
+uint64_t transport_run_histories(const struct transport_run *run);
+/* What the histories so far say. ERROR_STATE: fewer than 16; ERROR_MEMORY */
+NODISCARD bool transport_run_read(const struct transport_run *run, struct transport_result *result, struct error *err);
+
+/* One step of n_histories, from its input to its doses. */
 NODISCARD bool transport_run(const struct transport_input *input, struct transport_result *result, struct error *err);
 void transport_result_finish(struct transport_result *result);

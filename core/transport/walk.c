@@ -168,6 +168,7 @@ void walk_neutron(const struct world *world, struct lane *lane, const struct par
 {
     float position[3], direction[3], energy_ev = particle->energy, weight = particle->weight;
     const float least = weight * NEUTRON_LEAST_WEIGHT;
+    lane->balance.begun += (double)weight;
     if (!enter(world, particle, position, direction))
         return;
     lane->balance.entered += (double)weight;

@@ -20,7 +20,7 @@ enum transport_tally {
 
 /* Where particles and their energy went, in units of weight; photon energies in MeV. */
 struct balance {
-    double entered, leaked, absorbed, roulette; /* neutrons: entered = leaked + absorbed + roulette */
+    double begun, entered, leaked, absorbed, roulette; /* neutrons; entered = leaked + absorbed + roulette */
     double emitted_mev, photon_entered_mev, photon_leaked_mev, photon_left_mev; /* left: in matter */
 };
 
@@ -35,7 +35,7 @@ struct world {
     double aperture_cm[3], axis[3][3]; /* of the beam: x, y and its direction, in the box's frame */
 };
 struct lane {
-    float (*tally)[N_TALLIES]; /* by cell, cm; the thread's, for a while */
+    float (*tally)[N_TALLIES]; /* by cell, cm */
     struct balance balance;
 };
 void world_init(struct world *world); /* fills what follows from the rest */

@@ -272,12 +272,13 @@ static void head_and_beam_turned_together_give_the_same(void **state)
 
 struct cancelling {
     atomic_bool cancel;
+    bool is_spent; /* cancels no more */
     int64_t cancelled_us;
 };
 static void cancel_at_a_tenth(void *context, double share)
 {
     struct cancelling *cancelling = context;
-    if (share > .1 && !atomic_exchange(&cancelling->cancel, true))
+    if (share > .1 && !cancelling->is_spent && !atomic_exchange(&cancelling->cancel, true))
         cancelling->cancelled_us = clock_now_us();
 }
 
@@ -300,6 +301,176 @@ static void a_cancelled_run_stops_and_leaves_nothing(void **state)
     assert_null(result.mask);
     assert_true(cancelling.cancelled_us > 0);
     assert_true(cpu_s() - before_s < 20); /* a tenth of the work and not all of it; how soon, make bench measures */
+    drop(world);
+}
+
+/* ---- a run that goes on ------------------------------------------------------------------------------------------- */
+
+static struct transport_run *begin(const struct world_made *world)
+{
+    struct error err = { 0 };
+    struct transport_run *run = transport_run_create(&world->input, &err);
+    if (!run)
+        fail_msg("%s", err.text);
+    return run;
+}
+
+static void step(struct transport_run *run, uint64_t n_histories)
+{
+    struct error err = { 0 };
+    if (!transport_run_step(run, n_histories, &err))
+        fail_msg("%s", err.text);
+}
+
+static struct transport_result look(const struct transport_run *run)
+{
+    struct transport_result result;
+    struct error err = { 0 };
+    if (!transport_run_read(run, &result, &err))
+        fail_msg("%s", err.text);
+    return result;
+}
+
+static void assert_same_bytes(const struct transport_result *a, const struct transport_result *b)
+{
+    size_t size = grid_n_voxels(&a->mask->grid) * sizeof(float);
+    assert_int_equal(grid_n_voxels(&b->mask->grid) * sizeof(float), size);
+    for (int i = 0; i < TRANSPORT_N_QUANTITIES; i++) {
+        assert_memory_equal(a->values[i]->voxels, b->values[i]->voxels, size);
+        assert_memory_equal(a->errors[i]->voxels, b->errors[i]->voxels, size);
+    }
+    assert_memory_equal(&a->balance, &b->balance, sizeof a->balance);
+    assert_true(a->n_histories == b->n_histories);
+}
+
+/* The same histories, added up in another order: sums in single precision differ in their last digits. */
+static void histories_in_steps_give_what_they_give_at_once(void **state)
+{
+    (void)state;
+    struct world_made *world = make(3, 1000, 16000, 19);
+    fill(world, in_sphere);
+    struct transport_result whole = run(world);
+    struct transport_run *run = begin(world);
+    for (uint64_t n = 1000; n <= 8000; n *= 2)
+        step(run, n);
+    step(run, 999);
+    step(run, 1);
+    assert_true(transport_run_histories(run) == 16000);
+    struct transport_result steps = look(run);
+    assert_true(steps.n_histories == 16000 && steps.seconds > 0);
+    for (int i = 0; i < TRANSPORT_N_QUANTITIES; i++)
+        for (size_t c = 0; c < grid_n_voxels(&whole.mask->grid); c++) {
+            double value = (double)((float *)whole.values[i]->voxels)[c];
+            assert_close(((float *)steps.values[i]->voxels)[c], value, 1e-4 * value + 1e-9 * whole.values[i]->high);
+        }
+    assert_close(steps.balance.absorbed, whole.balance.absorbed, 1e-9);
+    transport_result_finish(&steps);
+    transport_result_finish(&whole);
+    transport_run_destroy(run);
+    drop(world);
+}
+
+static void another_pose_begins_anew(void **state)
+{
+    (void)state;
+    struct world_made *world = make(2, 1000, 8000, 23);
+    fill(world, in_odd_shape);
+    struct transport_run *run = begin(world);
+    step(run, 5000);
+    struct error err = { 0 };
+    assert_false(transport_run_aim(run, vec3(40, 40, -30), vec3(0, 0, 2), &err));
+    assert_true(transport_run_histories(run) == 5000); /* refused: the run is as it was */
+    world->input.aperture_lps_mm = vec3(-30, 45, 40);
+    world->input.direction_lps = vec3(1, 0, 0);
+    assert_true(transport_run_aim(run, world->input.aperture_lps_mm, world->input.direction_lps, &err));
+    assert_true(transport_run_histories(run) == 0);
+    struct transport_result moved;
+    assert_false(transport_run_read(run, &moved, &err));
+    assert_int_equal(err.code, ERROR_STATE);
+    step(run, 8000);
+    moved = look(run);
+    struct transport_run *fresh = begin(world);
+    step(fresh, 8000);
+    struct transport_result expected = look(fresh);
+    assert_same_bytes(&moved, &expected);
+    assert_true(moved.values[TRANSPORT_BORON]->high > 0);
+    transport_result_finish(&moved);
+    transport_result_finish(&expected);
+    transport_run_destroy(run);
+    transport_run_destroy(fresh);
+    drop(world);
+}
+
+/* A cancelled step is undone to the last whole batch, here to what was there before, and the run goes on as if it had
+ * never been. */
+static void a_cancelled_step_leaves_the_run_as_it_was(void **state)
+{
+    (void)state;
+    struct cancelling cancelling = { 0 };
+    struct world_made *world = make(3, 1000, 8000, 25);
+    fill(world, NULL);
+    struct transport_run *undisturbed = begin(world);
+    step(undisturbed, 8000);
+    struct transport_result before = look(undisturbed);
+    step(undisturbed, 8000);
+    struct transport_result after = look(undisturbed);
+    world->input.cancel = &cancelling.cancel;
+    world->input.progress = cancel_at_a_tenth;
+    world->input.context = &cancelling;
+    atomic_store(&cancelling.cancel, true);
+    struct error err = { 0 };
+    assert_null(transport_run_create(&world->input, &err)); /* while it is set up */
+    assert_int_equal(err.code, ERROR_CANCELLED);
+    atomic_store(&cancelling.cancel, false);
+    world->input.progress = NULL;
+    struct transport_run *run = begin(world);
+    step(run, 8000);
+    atomic_store(&cancelling.cancel, true);
+    assert_false(transport_run_step(run, 4000000, &err));
+    atomic_store(&cancelling.cancel, false);
+    assert_int_equal(err.code, ERROR_CANCELLED);
+    struct transport_result result = look(run);
+    assert_same_bytes(&result, &before);
+    transport_result_finish(&result);
+    step(run, 8000);
+    result = look(run);
+    assert_same_bytes(&result, &after);
+    transport_result_finish(&result);
+    transport_result_finish(&before);
+    transport_result_finish(&after);
+    transport_run_destroy(undisturbed);
+    transport_run_destroy(run);
+    drop(world);
+}
+
+/* Histories of a lane that were under way when the step was cancelled count for nothing. */
+static void a_step_that_is_cancelled_at_work_leaves_nothing_of_it(void **state)
+{
+    (void)state;
+    struct cancelling cancelling = { 0 };
+    struct world_made *world = make(3, 1000, 8000, 27);
+    fill(world, NULL);
+    world->input.cancel = &cancelling.cancel;
+    world->input.progress = cancel_at_a_tenth;
+    world->input.context = &cancelling;
+    struct transport_run *run = begin(world);
+    struct error err = { 0 };
+    assert_false(transport_run_step(run, 40000, &err));
+    assert_true(cancelling.cancelled_us > 0 && transport_run_histories(run) == 0);
+    world->input.progress = NULL;
+    world->input.cancel = NULL;
+    struct transport_run *fresh = begin(world);
+    step(fresh, 4000);
+    struct transport_result expected = look(fresh);
+    atomic_store(&cancelling.cancel, false);
+    cancelling.is_spent = true;
+    step(run, 4000);
+    struct transport_result result = look(run);
+    assert_same_bytes(&result, &expected);
+    transport_result_finish(&result);
+    transport_result_finish(&expected);
+    transport_run_destroy(run);
+    transport_run_destroy(fresh);
     drop(world);
 }
 
@@ -351,6 +522,10 @@ int main(void)
         cmocka_unit_test(the_number_of_threads_changes_no_byte),
         cmocka_unit_test(head_and_beam_turned_together_give_the_same),
         cmocka_unit_test(a_cancelled_run_stops_and_leaves_nothing),
+        cmocka_unit_test(histories_in_steps_give_what_they_give_at_once),
+        cmocka_unit_test(another_pose_begins_anew),
+        cmocka_unit_test(a_cancelled_step_leaves_the_run_as_it_was),
+        cmocka_unit_test(a_step_that_is_cancelled_at_work_leaves_nothing_of_it),
         cmocka_unit_test(input_beyond_its_limits_is_refused_with_what_was_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
