@@ -8,7 +8,8 @@
 /* Turns a unit vector by an angle, about it by one of 1024 azimuths. */
 static inline void direction_turn(float direction[3], float cosine, const float azimuth[2])
 {
-    float sine = sqrtf(fmaxf(0.F, 1.F - cosine * cosine)), a = sine * azimuth[0], b = sine * azimuth[1];
+    float square = 1.F - cosine * cosine, sine = square > 0 ? sqrtf(square) : 0, a = sine * azimuth[0],
+          b = sine * azimuth[1];
     float u = direction[0], v = direction[1], w = direction[2], across = 1.F - w * w;
     if (across < 1e-6F) {
         direction[0] = a;
@@ -29,7 +30,7 @@ static inline float direction_cosine(float mean, uint64_t bits)
     if (mean > .3334F)
         return 2 * mean - 1 + 2 * (1 - mean) * a;
     float share = ((float)(bits & 0xffff) + .5F) * (1.F / 65536.F);
-    float of_one = share < 3 * fabsf(mean) ? fmaxf(a, b) : a;
+    float of_one = share < 3 * fabsf(mean) && b > a ? b : a;
     return mean < 0 ? 1 - 2 * of_one : 2 * of_one - 1;
 }
 

@@ -215,6 +215,7 @@ bool geometry_init(struct geometry *geometry, const struct grid *grid, const uin
         geometry->cells = *cells;
     else if (!own_cells(geometry, cell_mm, err))
         return false;
+    geometry->are_cells_blocks = !cells && cell_mm / 10 == GEOMETRY_BLOCK_CM;
     if (aim_cells(geometry, err) && make_blocks(geometry, cancel, err) && measure_matter(geometry, cancel, err))
         return true;
     geometry_finish(geometry);

@@ -25,7 +25,8 @@ struct geometry {
     struct grid cells; /* of the tally, in patient coordinates */
     float cells_per_cm[3], cells_shift[3];
     int32_t n_cells[3];
-    float *matter; /* share of a cell that is not air */
+    bool are_cells_blocks; /* each cell is a block, and of the same index */
+    float *matter;         /* share of a cell that is not air */
 
     struct vec3 axis_lps[3], corner_lps_mm; /* of the box */
 };
@@ -45,8 +46,8 @@ void geometry_finish(struct geometry *geometry);
 void geometry_place(const struct geometry *geometry, struct vec3 point_lps_mm, double position_cm[3]);
 void geometry_direct(const struct geometry *geometry, struct vec3 direction_lps, double direction[3]);
 
-/* Material at a position; -1 outside the box. */
-static inline int geometry_material(const struct geometry *geometry, const float position[3])
+/* Block at a position; -1 outside the box. */
+static inline ptrdiff_t geometry_block(const struct geometry *geometry, const float position[3])
 {
     const float per_cm = (float)(1 / GEOMETRY_BLOCK_CM);
     if (!(position[0] >= 0 && position[1] >= 0 && position[2] >= 0))
@@ -55,9 +56,15 @@ static inline int geometry_material(const struct geometry *geometry, const float
             k = (int32_t)(position[2] * per_cm);
     if (i >= geometry->n_blocks[0] || j >= geometry->n_blocks[1] || k >= geometry->n_blocks[2])
         return -1;
-    uint8_t material =
-        geometry->blocks[((size_t)k * (size_t)geometry->n_blocks[1] + (size_t)j) * (size_t)geometry->n_blocks[0] +
-                         (size_t)i];
+    return ((ptrdiff_t)k * geometry->n_blocks[1] + j) * geometry->n_blocks[0] + i;
+}
+
+/* Material at a position in a block; -1 outside the box. */
+static inline int geometry_material_in(const struct geometry *geometry, ptrdiff_t block, const float position[3])
+{
+    if (block < 0)
+        return -1;
+    uint8_t material = geometry->blocks[block];
     if (material != GEOMETRY_MIXED)
         return material;
     float index[3];

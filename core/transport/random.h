@@ -33,6 +33,11 @@ static inline float random_low(uint64_t bits)
 {
     return ((float)((bits >> 16) & 0x7fffff) + .5F) * (1.F / 8388608.F);
 }
+/* The last sixteen bits, independent of both. */
+static inline float random_last(uint64_t bits)
+{
+    return ((float)(uint16_t)bits + .5F) * (1.F / 65536.F);
+}
 static inline float random_unit(struct random *random)
 {
     return random_high(random_bits(random));

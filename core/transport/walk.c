@@ -7,10 +7,12 @@
 #include "core/transport/direction.h"
 #include "core/transport/photon_data.h"
 
-#define NEUTRON_LEAST_WEIGHT .05F /* of the first; below, one of four goes on with four times the weight */
-#define FAST_LEAST_PER_CM 1.F     /* points per cm that count for fast neutrons, whose collisions are rare */
+/* Of the first weight; below, one of two goes on with twice the weight. Late collisions of a light neutron cost as much
+ * as others and count less: at a half, the error falls most in a given time. */
+#define NEUTRON_LEAST_WEIGHT .5F
+#define FAST_LEAST_PER_CM 1.F /* points per cm that count for fast neutrons, whose collisions are rare */
 #define PHOTON_LEAST_WEIGHT .005F
-#define PHOTONS_PER_NEUTRON 4.F /* that are followed for each absorbed neutron of weight 1 */
+#define PHOTONS_PER_NEUTRON 8.F /* that are followed for each absorbed neutron of weight 1 */
 #define PHOTON_LEAST_PER_CM .9F /* points per cm that count for the kerma, also where collisions are rare */
 #define FREE_STILL_EV .2F       /* nuclei but hydrogen change no energy below: they move as fast as the neutron */
 
@@ -54,6 +56,17 @@ static bool enter(const struct world *world, const struct particle *particle, fl
     return true;
 }
 
+/* Material and cell at a position; -1 outside. The tally is fetched while the material is looked up, which takes as
+ * long. */
+static inline int locate(const struct world *world, const struct lane *lane, const float position[3], ptrdiff_t *cell)
+{
+    ptrdiff_t block = geometry_block(world->geometry, position);
+    *cell = world->geometry->are_cells_blocks ? block : geometry_cell(world->geometry, position);
+    if (*cell >= 0)
+        __builtin_prefetch(&lane->tally[*cell], 1);
+    return geometry_material_in(world->geometry, block, position);
+}
+
 /* Photon from the box's inside or its face; its kerma counts at each tentative collision. */
 static void follow_photon(const struct world *world, struct lane *lane, float position[3], float direction[3],
                           float energy_mev, float weight, struct random *random)
@@ -65,16 +78,14 @@ static void follow_photon(const struct world *world, struct lane *lane, float po
         float highest = world->photon_highest[bin], step = -logf(random_high(bits)) / highest;
         for (int i = 0; i < 3; i++)
             position[i] += direction[i] * step;
-        int material = geometry_material(world->geometry, position);
+        ptrdiff_t cell;
+        int material = locate(world, lane, position, &cell);
         if (material < 0) {
             lane->balance.photon_leaked_mev += (double)(weight * energy_mev);
             return;
         }
-        if (material > 0 || world->is_whole_cells) {
-            ptrdiff_t cell = geometry_cell(world->geometry, position);
-            if (cell >= 0)
-                lane->tally[cell][TALLY_PHOTON] += weight * tables->photon_gy_cm2[bin] / highest;
-        }
+        if (cell >= 0 && (material > 0 || world->is_whole_cells))
+            lane->tally[cell][TALLY_PHOTON] += weight * tables->photon_gy_cm2[bin] / highest;
         if (material == 0 ||
             random_low(bits) * highest >= tables->photon_cm2_g[bin] * world->media[material - 1].electrons)
             continue;
@@ -88,11 +99,13 @@ static void follow_photon(const struct world *world, struct lane *lane, float po
     }
 }
 
-/* Photons of an absorption, as many on average as PHOTONS_PER_NEUTRON says; their weights give the energy. */
+/* Photons of an absorption, as many on average as PHOTONS_PER_NEUTRON says; their weights give the energy.
+ *
+ *   chance  even from 0 to 1 */
 static void emit(const struct world *world, struct lane *lane, const struct medium *medium, const float position[3],
-                 float absorbed, struct random *random)
+                 float absorbed, float chance, struct random *random)
 {
-    for (int n = (int)(absorbed * PHOTONS_PER_NEUTRON + random_unit(random)); n > 0; n--) {
+    for (int n = (int)(absorbed * PHOTONS_PER_NEUTRON + chance); n > 0; n--) {
         uint64_t bits = random_bits(random);
         float at[3] = { position[0], position[1], position[2] }, direction[3] = { 0, 0, 1 };
         direction_turn(direction, 2 * random_high(bits) - 1, world->tables->azimuth[bits & 1023]);
@@ -102,6 +115,11 @@ static void emit(const struct world *world, struct lane *lane, const struct medi
         if (medium->emitted_mev > 0)
             follow_photon(world, lane, at, direction, line_mev, (float)emitted_mev / line_mev, random);
     }
+}
+
+static inline float at_least(float value, float least)
+{
+    return value > least ? value : least;
 }
 
 static void scatter_water(const struct particle_tables *tables, int bin, float direction[3], float *energy_ev,
@@ -128,7 +146,7 @@ static void scatter(const struct world *world, const struct medium *medium, int 
             return;
         }
         float kept = random_low(bits); /* of the energy: even from 0 to 1, for isotropic scattering by equal masses */
-        *energy_ev = fmaxf(*energy_ev * kept, NEUTRON_LOWEST_EV);
+        *energy_ev = at_least(*energy_ev * kept, NEUTRON_LOWEST_EV);
         direction_turn(direction, sqrtf(kept), tables->azimuth[bits & 1023]);
         return;
     }
@@ -140,15 +158,6 @@ static void scatter(const struct world *world, const struct medium *medium, int 
     if (*energy_ev > FREE_STILL_EV)
         *energy_ev *= square / ((mass + 1) * (mass + 1));
     direction_turn(direction, (1 + mass * cosine) / sqrtf(square), tables->azimuth[bits & 1023]);
-}
-
-/* The cell at a position; -1 outside. Its tally is fetched while the material is looked up, which takes as long. */
-static inline ptrdiff_t fetch_cell(const struct world *world, const struct lane *lane, const float position[3])
-{
-    ptrdiff_t cell = geometry_cell(world->geometry, position);
-    if (cell >= 0)
-        __builtin_prefetch(&lane->tally[cell], 1);
-    return cell;
 }
 
 static inline void count(const struct world *world, struct lane *lane, ptrdiff_t cell, float energy_ev, int bin,
@@ -178,8 +187,8 @@ void walk_neutron(const struct world *world, struct lane *lane, const struct par
         float highest = world->neutron_highest[bin], step = -logf(random_high(bits)) / highest;
         for (int i = 0; i < 3; i++)
             position[i] += direction[i] * step;
-        ptrdiff_t cell = fetch_cell(world, lane, position);
-        int material = geometry_material(world->geometry, position);
+        ptrdiff_t cell;
+        int material = locate(world, lane, position, &cell);
         if (material < 0) {
             lane->balance.leaked += (double)weight;
             return;
@@ -195,13 +204,13 @@ void walk_neutron(const struct world *world, struct lane *lane, const struct par
         float absorbed = weight * at->absorbed;
         weight -= absorbed;
         lane->balance.absorbed += (double)absorbed;
-        emit(world, lane, medium, position, absorbed, random);
+        emit(world, lane, medium, position, absorbed, random_last(bits), random);
         if (weight < least) {
-            bool is_kept = random_unit(random) < .25F;
-            lane->balance.roulette += (double)(is_kept ? -3 * weight : weight);
+            bool is_kept = random_bits(random) >> 63;
+            lane->balance.roulette += (double)(is_kept ? -weight : weight);
             if (!is_kept)
                 return;
-            weight *= 4;
+            weight *= 2;
         }
         scatter(world, medium, bin, direction, &energy_ev, random);
     }
