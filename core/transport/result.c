@@ -1,4 +1,4 @@
-/* From tallies of lanes to doses with errors. */
+/* Doses with errors, from the tallies of lanes. */
 #include <math.h>
 
 #include "core/transport/run.h"

@@ -27,5 +27,3 @@ struct transport_run {
     atomic_uint_fast64_t n_done; /* of the step */
     atomic_bool is_cancelled;
 };
-
-void balance_add(struct balance *sum, const struct balance *more);

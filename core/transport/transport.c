@@ -202,19 +202,6 @@ static void work_lanes(void *context, int part, int n_parts)
         work(run, lane, part == 0);
 }
 
-void balance_add(struct balance *sum, const struct balance *more)
-{
-    sum->begun += more->begun;
-    sum->entered += more->entered;
-    sum->leaked += more->leaked;
-    sum->absorbed += more->absorbed;
-    sum->roulette += more->roulette;
-    sum->emitted_mev += more->emitted_mev;
-    sum->photon_entered_mev += more->photon_entered_mev;
-    sum->photon_leaked_mev += more->photon_leaked_mev;
-    sum->photon_left_mev += more->photon_left_mev;
-}
-
 /* Moves what lanes added up in a batch to their sums, or drops it. */
 static void flush_lanes(void *context, int part, int n_parts)
 {

@@ -75,7 +75,7 @@ NODISCARD bool transport_run_aim(struct transport_run *run, struct vec3 aperture
  * whole batches of TRANSPORT_BATCH as were done. ERROR_RANGE: none, or beyond TRANSPORT_MAX_HISTORIES in all */
 NODISCARD bool transport_run_step(struct transport_run *run, uint64_t n_histories, struct error *err);
 uint64_t transport_run_histories(const struct transport_run *run);
-/* What the histories so far say. ERROR_STATE: fewer than 16; ERROR_MEMORY */
+/* Doses of the histories so far. ERROR_STATE: fewer than 16; ERROR_MEMORY */
 NODISCARD bool transport_run_read(const struct transport_run *run, struct transport_result *result, struct error *err);
 
 /* One step of n_histories, from its input to its doses. */

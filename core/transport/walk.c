@@ -7,14 +7,27 @@
 #include "core/transport/direction.h"
 #include "core/transport/photon_data.h"
 
-/* Of the first weight; below, one of two goes on with twice the weight. Late collisions of a light neutron cost as much
- * as others and count less: at a half, the error falls most in a given time. */
+/* Share of the first weight; below, one of two goes on with twice the weight. Late collisions of a light neutron cost
+ * as much as others and count less: at a half, the error falls most in a given time. */
 #define NEUTRON_LEAST_WEIGHT .5F
 #define FAST_LEAST_PER_CM 1.F /* points per cm that count for fast neutrons, whose collisions are rare */
 #define PHOTON_LEAST_WEIGHT .005F
 #define PHOTONS_PER_NEUTRON 8.F /* that are followed for each absorbed neutron of weight 1 */
 #define PHOTON_LEAST_PER_CM .9F /* points per cm that count for the kerma, also where collisions are rare */
 #define FREE_STILL_EV .2F       /* nuclei but hydrogen change no energy below: they move as fast as the neutron */
+
+void balance_add(struct balance *sum, const struct balance *more)
+{
+    sum->begun += more->begun;
+    sum->entered += more->entered;
+    sum->leaked += more->leaked;
+    sum->absorbed += more->absorbed;
+    sum->roulette += more->roulette;
+    sum->emitted_mev += more->emitted_mev;
+    sum->photon_entered_mev += more->photon_entered_mev;
+    sum->photon_leaked_mev += more->photon_leaked_mev;
+    sum->photon_left_mev += more->photon_left_mev;
+}
 
 void world_init(struct world *world)
 {

@@ -24,6 +24,8 @@ struct balance {
     double emitted_mev, photon_entered_mev, photon_leaked_mev, photon_left_mev; /* left: in matter */
 };
 
+void balance_add(struct balance *sum, const struct balance *more);
+
 struct world {
     const struct geometry *geometry;
     const struct medium *media; /* [n_media], of materials from 1 */

@@ -343,7 +343,7 @@ static void assert_same_bytes(const struct transport_result *a, const struct tra
     assert_true(a->n_histories == b->n_histories);
 }
 
-/* The same histories, added up in another order: sums in single precision differ in their last digits. */
+/* Equal histories, added up in another order: sums in single precision differ in their last digits. */
 static void histories_in_steps_give_what_they_give_at_once(void **state)
 {
     (void)state;

@@ -329,8 +329,8 @@ static void boron_takes_the_published_share_of_thermal_neutrons(void **state)
     transport_result_finish(&with);
 }
 
-/* The same: thermal neutrons of a beam of 1 keV are most at 3.0 cm. The peak of a parabola through what is above nine
- * tenths of the most, by least squares. */
+/* Thermal neutrons of a beam of 1 keV are most at 3.0 cm (Goorley and others). Our peak is that of a parabola through
+ * what is above nine tenths of the most, by least squares. */
 static void a_beam_of_1_kev_has_its_peak_where_it_is_published(void **state)
 {
     (void)state;
