@@ -116,14 +116,40 @@ static const float *voxels_of(const struct isoeffective_rows *rows, size_t row, 
     return rows->components[row][c] ? rows->components[row][c]->rows[0]->voxels : NULL;
 }
 
-bool isoeffective_rows_value(const struct isoeffective_rows *rows, size_t row, struct vec3 point_lps_mm, double *value)
+static bool sample(const struct isoeffective_rows *rows, size_t row, struct vec3 point_lps_mm,
+                   double values[N_COMPONENTS])
 {
-    double values[N_COMPONENTS] = { 0 };
     for (int c = 0; c < N_COMPONENTS; c++)
         if (rows->components[row][c] && !volume_sample(rows->components[row][c]->rows[0], point_lps_mm, &values[c]))
             return false;
+    return true;
+}
+
+bool isoeffective_rows_value(const struct isoeffective_rows *rows, size_t row, struct vec3 point_lps_mm, double *value)
+{
+    double values[N_COMPONENTS] = { 0 };
+    if (!sample(rows, row, point_lps_mm, values))
+        return false;
     *value = map(rows, row, values);
     return isfinite(*value);
+}
+
+bool isoeffective_rows_components(const struct isoeffective_rows *rows, size_t row, struct vec3 point_lps_mm,
+                                  double gy[4])
+{
+    double values[N_COMPONENTS] = { 0 };
+    if (!sample(rows, row, point_lps_mm, values))
+        return false;
+    gy[0] = values[BORON] * rows->gy;
+    gy[1] = values[NITROGEN] * rows->gy;
+    gy[2] = (values[FAST] + values[OTHER]) * rows->gy;
+    gy[3] = values[GAMMA] * rows->gy;
+    return true;
+}
+
+double isoeffective_rows_unit_gy(const struct isoeffective_rows *rows)
+{
+    return rows->gy;
 }
 
 /* ---- how fine --------------------------------------------------------------------------------------------------- */

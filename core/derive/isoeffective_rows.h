@@ -32,3 +32,7 @@ NODISCARD bool isoeffective_rows_fill(const struct isoeffective_rows *rows, size
                                       struct volume *volume, struct error *err);
 /* The dose at a point with the weights of a row: components as volume_sample, then mapped. False: there is none. */
 bool isoeffective_rows_value(const struct isoeffective_rows *rows, size_t row, struct vec3 point_lps_mm, double *value);
+/* The doses that are mapped at a point: boron, nitrogen, fast with other recoils, gamma. False: there are none. */
+bool isoeffective_rows_components(const struct isoeffective_rows *rows, size_t row, struct vec3 point_lps_mm,
+                                  double gy[4]);
+double isoeffective_rows_unit_gy(const struct isoeffective_rows *rows); /* one unit of the dose */

@@ -127,25 +127,44 @@ static double quotient(double dose, double per_unit)
     return per_unit > 0 ? dose / per_unit : INFINITY;
 }
 
+/* What a limit waits for. */
+struct awaited {
+    struct dvh_metric metric; /* of a dose */
+    double dose, least, most; /* the dose, and the bounds of the metric now */
+    bool is_settled;          /* met at any output, or at none */
+};
+
+static bool await(const struct dvh *dvh, const struct dvh_metric *metric, bool is_at_most, double limit,
+                  struct awaited *awaited, struct error *err)
+{
+    const double all = (dvh->n + dvh->n_missing) * dvh->univel_cm3;
+    *awaited = (struct awaited){ .is_settled = false };
+    if (!(dvh->n > 0))
+        return error_set(err, ERROR_NOT_FOUND, "the dose has no value in the region");
+    if (as_dose(metric, limit, &awaited->metric, &awaited->dose)) {
+        const double size = metric->kind == DVH_VOLUME_CC ? all : 100;
+        awaited->is_settled = is_at_most ? limit >= size : limit > size;
+        if (awaited->is_settled)
+            return true;
+    }
+    dvh_metric_range(dvh, &awaited->metric, &awaited->least, &awaited->most);
+    if (isnan(awaited->least) || isnan(awaited->most))
+        return error_set(err, ERROR_RANGE, "the region is smaller than that");
+    return true;
+}
+
 bool irradiation_reach_of(const struct dvh *dvh, const struct dvh_metric *metric, bool is_at_most, double limit,
                           struct irradiation_reach *reach, struct error *err)
 {
-    struct dvh_metric of;
-    double dose, least, most, all = (dvh->n + dvh->n_missing) * dvh->univel_cm3;
-    if (!(dvh->n > 0))
-        return error_set(err, ERROR_NOT_FOUND, "the dose has no value in the region");
+    struct awaited awaited;
+    *reach = (struct irradiation_reach){ INFINITY, INFINITY };
     if (metric->kind == DVH_HOMOGENEITY)
         return error_set(err, ERROR_STATE, "the figure does not change with the time");
-    *reach = (struct irradiation_reach){ INFINITY, INFINITY };
-    if (as_dose(metric, limit, &of, &dose)) {
-        double size = metric->kind == DVH_VOLUME_CC ? all : 100;
-        if (is_at_most ? limit >= size : limit > size)
-            return true; /* met at any time, or at none */
-    }
-    dvh_metric_range(dvh, &of, &least, &most);
-    if (isnan(least) || isnan(most))
-        return error_set(err, ERROR_RANGE, "the region is smaller than that");
-    *reach = (struct irradiation_reach){ quotient(dose, most), quotient(dose, least) };
+    if (!await(dvh, metric, is_at_most, limit, &awaited, err))
+        return false;
+    if (!awaited.is_settled)
+        *reach =
+            (struct irradiation_reach){ quotient(awaited.dose, awaited.most), quotient(awaited.dose, awaited.least) };
     return true;
 }
 
@@ -163,4 +182,108 @@ void irradiation_figure(const struct dvh *dvh, const struct dvh_metric *metric, 
         return;
     *least *= output;
     *most = isinf(*most) ? *most : *most * output;
+}
+
+/* ---- a dose that is not proportional ----------------------------------------------------------------------------- */
+
+enum { FALSE_POSITION_STEPS = 30, MAX_STEPS = 60 }; /* then halves: 30 of them are 1e-9 */
+static const double output_tolerance = 1e-4, dose_tolerance = 1e-6, most_output = 1e9;
+
+struct growth {
+    irradiation_histogram *histogram;
+    void *context;
+    const struct awaited *awaited;
+    bool is_most; /* of the bounds */
+};
+struct side {
+    double output, off; /* off: the figure less the dose that is awaited */
+};
+
+static bool look_at(const struct growth *growth, double output, struct side *side, struct error *err)
+{
+    struct dvh dvh = { 0 };
+    double least, most;
+    if (!growth->histogram(growth->context, output, &dvh, err))
+        return false;
+    dvh_metric_range(&dvh, &growth->awaited->metric, &least, &most);
+    dvh_finish(&dvh);
+    *side = (struct side){ output, (growth->is_most ? most : least) - growth->awaited->dose };
+    return !isnan(side->off) || error_set(err, ERROR_NOT_FOUND, "the dose has no value in the region");
+}
+
+/* Grows the bracket until high is beyond the dose. high->output becomes INFINITY: never. */
+static bool bracket(const struct growth *growth, struct side *low, struct side *high, struct error *err)
+{
+    const double dose = growth->awaited->dose;
+    while (high->off < 0) {
+        const double figure = high->off + dose;
+        if (!(figure > 0) || high->output >= most_output) {
+            high->output = INFINITY;
+            return true;
+        }
+        *low = *high;
+        if (!look_at(growth, low->output * fmin(fmax(1.1 * dose / figure, 1.5), 100), high, err))
+            return false;
+    }
+    return true;
+}
+
+static bool is_wide(const struct side *low, const struct side *high)
+{
+    return isfinite(high->output) && high->output - low->output > output_tolerance * high->output;
+}
+
+/* Finds where a bound of the figure is the dose. figure: that bound at 1 unit. */
+static bool find_output(const struct growth *growth, double figure, double *output, struct error *err)
+{
+    const double dose = growth->awaited->dose;
+    struct side low = { 0, -dose }, high = { 1, figure - dose }, at;
+    int last = 0; /* the end that moved last: -1 low, 1 high */
+    *output = 0;
+    if (!(dose > 0) || isinf(figure))
+        return true;
+    if (!bracket(growth, &low, &high, err))
+        return false;
+    for (int step = 0; step < MAX_STEPS && is_wide(&low, &high); step++) {
+        const double width = high.output - low.output, margin = output_tolerance / 4 * high.output,
+                     share = step < FALSE_POSITION_STEPS ? low.off / (low.off - high.off) : 0.5,
+                     guess = low.output + share * width;
+        if (!look_at(growth, fmin(fmax(guess, low.output + margin), high.output - margin), &at, err))
+            return false;
+        if (fabs(at.off) <= dose_tolerance * dose) {
+            low = high = at;
+        } else if (at.off < 0) {
+            low = at;
+            high.off /= last < 0 ? 2 : 1;
+            last = -1;
+        } else {
+            high = at;
+            low.off /= last > 0 ? 2 : 1;
+            last = 1;
+        }
+    }
+    *output = isinf(high.output) ? INFINITY : (low.output + high.output) / 2;
+    return true;
+}
+
+bool irradiation_reach_growing(irradiation_histogram *histogram, void *context, const struct dvh_metric *metric,
+                               bool is_at_most, double limit, struct irradiation_reach *reach, struct error *err)
+{
+    struct awaited awaited;
+    struct dvh dvh = { 0 };
+    struct growth growth = { histogram, context, &awaited, true };
+    *reach = (struct irradiation_reach){ INFINITY, INFINITY };
+    if (metric->kind == DVH_HOMOGENEITY)
+        return error_set(err, ERROR_STATE, "the figure does not always grow with the time");
+    if (!histogram(context, 1, &dvh, err))
+        return false;
+    const bool is_awaited = await(&dvh, metric, is_at_most, limit, &awaited, err);
+    dvh_finish(&dvh);
+    if (!is_awaited || awaited.is_settled)
+        return is_awaited;
+    if (!find_output(&growth, awaited.most, &reach->least, err))
+        return false;
+    reach->most = reach->least;
+    growth.is_most = false;
+    return awaited.least == awaited.most || find_output(&growth, awaited.least, &reach->most, err);
 }

@@ -1,7 +1,8 @@
 #pragma once
 /* How long to irradiate: from doses per output of a source to the output at which a figure of a region reaches its
  * limit. Weighted and physical doses grow in proportion to the output as long as the concentration of boron and the
- * shares of the fields are those stated. Any thread. */
+ * shares of the fields are those stated; a photon-isoeffective dose grows with it, too, but not in proportion. Any
+ * thread. */
 #include "core/dose/dvh_metrics.h"
 
 /* ---- the source's output ---------------------------------------------------------------------------------------- */
@@ -48,3 +49,22 @@ NODISCARD bool irradiation_reach_of(const struct dvh *dvh, const struct dvh_metr
 /* The bounds of a figure at an output, from those per one unit of it; volumes are counted at the output. */
 void irradiation_figure(const struct dvh *dvh, const struct dvh_metric *metric, double output, double *least,
                         double *most);
+
+/* ---- a dose that is not proportional ----------------------------------------------------------------------------- */
+
+/* The histogram of a dose at an output. dvh: zeroed, for dvh_finish; unchanged on failure. */
+typedef bool irradiation_histogram(void *context, double output, struct dvh *dvh, struct error *err);
+
+/* Like irradiation_reach_of, of a dose that is 0 without output and grows with it at every univel. The output is found
+ * in a bracket by false position, the end that stays counting half (Illinois), then by halving, to 1e-4 of itself;
+ * beyond 1e9 units it counts as never reached.
+ *
+ *   errors   also ERROR_STATE for a figure that need not grow; those of histogram
+ *   source   M. Dowell and P. Jarratt, A modified regula falsi method, BIT 11 (1971) 168. A photon-isoeffective dose
+ *            (isoeffective.h) grows: at constant dose rates each term of its effect is in proportion to the time T or
+ *            to T^2 G(T), which is in proportion to y - 1 + e^-y, y = T / repair time, and the dose is the positive
+ *            root of alpha D + beta Gr D^2 = effect (S. J. Gonzalez and G. A. Santa Cruz, Radiat. Res. 178 (2012) 609;
+ *            D. E. Lea and D. G. Catcheside, J. Genet. 44 (1942) 216) */
+NODISCARD bool irradiation_reach_growing(irradiation_histogram *histogram, void *context,
+                                         const struct dvh_metric *metric, bool is_at_most, double limit,
+                                         struct irradiation_reach *reach, struct error *err);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/derive/dose_growth.h"
 #include "core/derive/dose_histogram.h"
 #include "core/dose/irradiation.h"
 #include "core/region/target.h"
@@ -26,18 +27,6 @@ struct irradiation {
     struct source_output output; /* amount 1: its kind's unit */
     double minutes;              /* per unit of output; NAN */
     struct error why;            /* code 0: it can be computed */
-};
-
-/* The figure of one limit, with the histogram that it is of. */
-struct limit {
-    const struct scene_constraint *constraint;
-    const struct region *region;
-    struct dvh_metric metric;
-    struct dose_choice choice;
-    struct dvh dvh;
-    struct irradiation_reach reach;
-    struct error why; /* code 0: reach is there */
-    bool is_known;    /* the bounds of reach are one */
 };
 
 /* ---- what is given ---------------------------------------------------------------------------------------------- */
@@ -100,35 +89,117 @@ static void find_output(struct irradiation *all)
 
 /* ---- one figure ------------------------------------------------------------------------------------------------- */
 
-/* The histogram of a region in a quantity, per one unit of output, with the region's own weights or those of a tissue.
- */
-static bool find_histogram(const struct irradiation *all, const struct region *region,
-                           enum scene_dose_quantity quantity, const char *tissue, struct dose_choice *choice,
-                           struct dvh *dvh, struct error *why)
+/* What the figures of a region are counted in. */
+struct counted {
+    const struct irradiation *all;
+    size_t region;
+    struct dose_choice choice;  /* per one unit of output */
+    struct dose_growth *growth; /* of an isoeffective dose, which is not in proportion to the output; else NULL */
+};
+
+static void counted_finish(struct counted *counted)
+{
+    dose_growth_destroy(counted->growth);
+}
+
+/* The figure of one limit, with the histogram that it is of. */
+struct limit {
+    const struct scene_constraint *constraint;
+    const struct region *region;
+    struct dvh_metric metric;
+    struct counted counted;
+    struct dvh dvh; /* at one unit of output */
+    struct irradiation_reach reach;
+    struct error why; /* code 0: reach is there */
+    bool is_known;    /* the bounds of reach are one */
+};
+
+/* False with why: an isoeffective dose depends on how long the irradiation takes. */
+static bool has_minutes(const struct irradiation *all, struct error *why)
+{
+    if (isfinite(all->minutes))
+        return true;
+    if (all->output.kind == SOURCE_COUNT)
+        return error_set(why, ERROR_UNSUPPORTED,
+                         "the isoeffective dose depends on how long the irradiation takes, and no time follows from a "
+                         "dose per %s",
+                         all->output.words);
+    return error_set(
+        why, ERROR_NOT_FOUND,
+        "the isoeffective dose depends on how long the irradiation takes: the source's strength is needed, "
+        "in a unit that fits %s",
+        all->output.words);
+}
+
+/* Chooses a region's quantity, with the region's own weights or those of a tissue. */
+static bool find_counted(const struct irradiation *all, const struct region *region, enum scene_dose_quantity quantity,
+                         const char *tissue, struct counted *counted, struct error *why)
 {
     const struct snapshot *snapshot = all->snapshot;
-    size_t r = (size_t)(region - snapshot->plan->regions.regions);
+    const enum region_population population = scene_population(snapshot->plan, &snapshot->scene);
+    counted->all = all;
+    counted->region = (size_t)(region - snapshot->plan->regions.regions);
     if (all->why.code)
         return error_set(why, all->why.code, "%s", all->why.text);
-    if (quantity == SCENE_DOSE_QUANTITY_ISOEFFECTIVE)
-        return error_set(why, ERROR_UNSUPPORTED,
-                         "the isoeffective dose does not grow in proportion to the time: it is not computed here");
-    return dose_is_counted(snapshot, r, why) &&
-           dose_choice_given(snapshot, all->given, all->n, quantity, tissue, choice, why) &&
-           dose_histogram_get(snapshot->derived, choice, r, scene_population(snapshot->plan, &snapshot->scene),
-                              DOSE_BY_REGION, 1, dvh, why);
+    if (!dose_is_counted(snapshot, counted->region, why) ||
+        !dose_choice_given(snapshot, all->given, all->n, quantity, tissue, &counted->choice, why))
+        return false;
+    if (quantity != SCENE_DOSE_QUANTITY_ISOEFFECTIVE)
+        return true;
+    if (has_minutes(all, why))
+        counted->growth = dose_growth_create(snapshot->derived, &counted->choice, counted->region, population, why);
+    return counted->growth != NULL;
+}
+
+/* The histogram at an output; of a dose in proportion to it that of one unit. */
+static bool histogram_at(void *context, double output, struct dvh *dvh, struct error *err)
+{
+    const struct counted *counted = context;
+    const struct snapshot *snapshot = counted->all->snapshot;
+    if (counted->growth)
+        return dose_growth_histogram(counted->growth, output, output * counted->all->minutes, dvh, err);
+    return dose_histogram_get(snapshot->derived, &counted->choice, counted->region,
+                              scene_population(snapshot->plan, &snapshot->scene), DOSE_BY_REGION, 1, dvh, err);
+}
+
+/* The bounds of a figure at an output. dvh: the histogram at one unit. NAN: they are not known. */
+static void figure_at(struct counted *counted, const struct dvh *dvh, const struct dvh_metric *metric, double output,
+                      double *least, double *most)
+{
+    struct dvh then = { 0 };
+    *least = *most = NAN;
+    if (!(dvh->n > 0) || !isfinite(output))
+        return;
+    if (!counted->growth) {
+        irradiation_figure(dvh, metric, output, least, most);
+        return;
+    }
+    if (histogram_at(counted, output, &then, NULL))
+        dvh_metric_range(&then, metric, least, most);
+    dvh_finish(&then);
+}
+
+static bool find_reach(struct limit *limit)
+{
+    const struct scene_constraint *constraint = limit->constraint;
+    const bool is_at_most = constraint->side == SCENE_LIMIT_SIDE_AT_MOST;
+    if (!histogram_at(&limit->counted, 1, &limit->dvh, &limit->why))
+        return false;
+    return limit->counted.growth ? irradiation_reach_growing(histogram_at, &limit->counted, &limit->metric, is_at_most,
+                                                             constraint->limit, &limit->reach, &limit->why)
+                                 : irradiation_reach_of(&limit->dvh, &limit->metric, is_at_most, constraint->limit,
+                                                        &limit->reach, &limit->why);
 }
 
 static void find_limit(const struct irradiation *all, const struct scene_constraint *constraint, struct limit *limit)
 {
     *limit = (struct limit){ .constraint = constraint,
                              .region = region_find(&all->snapshot->plan->regions, constraint->region) };
-    bool has_reach = (limit->region || error_set(&limit->why, ERROR_NOT_FOUND, "no region is chosen")) &&
-                     dvh_metric_parse(constraint->metric, &limit->metric, &limit->why) &&
-                     find_histogram(all, limit->region, constraint->quantity, constraint->tissue, &limit->choice,
-                                    &limit->dvh, &limit->why) &&
-                     irradiation_reach_of(&limit->dvh, &limit->metric, constraint->side == SCENE_LIMIT_SIDE_AT_MOST,
-                                          constraint->limit, &limit->reach, &limit->why);
+    bool has_reach =
+        (limit->region || error_set(&limit->why, ERROR_NOT_FOUND, "no region is chosen")) &&
+        dvh_metric_parse(constraint->metric, &limit->metric, &limit->why) &&
+        find_counted(all, limit->region, constraint->quantity, constraint->tissue, &limit->counted, &limit->why) &&
+        find_reach(limit);
     if (!has_reach)
         limit->reach = (struct irradiation_reach){ NAN, NAN };
     limit->is_known = has_reach && limit->reach.least == limit->reach.most;
@@ -179,17 +250,16 @@ static void add_range(cJSON *json, const char *const names[3], double least, dou
     json_add_finite(json, names[2], most);
 }
 
-static void add_limit(cJSON *list, const struct irradiation *all, const char *id, const struct limit *limit,
-                      bool is_first, double output)
+static void add_limit(cJSON *list, const struct irradiation *all, const char *id, struct limit *limit, bool is_first,
+                      double output)
 {
     static const char *const units[] = { "units", "units_least", "units_most" },
                              *values[] = { "value", "least", "most" };
     const struct scene_constraint *constraint = limit->constraint;
     cJSON *row = cJSON_CreateObject();
     char unit[DOSE_UNIT_SIZE] = "";
-    double least = NAN, most = NAN;
-    if (limit->dvh.n > 0 && isfinite(output))
-        irradiation_figure(&limit->dvh, &limit->metric, output, &least, &most);
+    double least, most;
+    figure_at(&limit->counted, &limit->dvh, &limit->metric, output, &least, &most);
     cJSON_AddStringToObject(row, "id", id);
     cJSON_AddStringToObject(row, "region", constraint->region);
     cJSON_AddBoolToObject(row, "is_target", limit->region && region_is_target(limit->region));
@@ -197,11 +267,11 @@ static void add_limit(cJSON *list, const struct irradiation *all, const char *id
     cJSON_AddStringToObject(row, "metric", constraint->metric);
     cJSON_AddStringToObject(row, "side", scene_limit_side_words.words[constraint->side]);
     json_add_finite(row, "limit", constraint->limit);
-    dose_add_population(row, all->snapshot, &limit->choice, constraint->tissue,
+    dose_add_population(row, all->snapshot, &limit->counted.choice, constraint->tissue,
                         scene_population(all->snapshot->plan, &all->snapshot->scene));
-    if (limit->choice.n_parts > 0)
-        dose_shown_unit(&all->snapshot->plan->doses[limit->choice.unit_of], limit->choice.shown, limit->choice.quantity,
-                        unit);
+    if (limit->counted.choice.n_parts > 0)
+        dose_shown_unit(&all->snapshot->plan->doses[limit->counted.choice.unit_of], limit->counted.choice.shown,
+                        limit->counted.choice.quantity, unit);
     cJSON_AddStringToObject(row, "unit", dose_metric_unit(&limit->metric, unit));
     add_range(row, units, limit->reach.least, limit->reach.most);
     cJSON_AddBoolToObject(row, "is_never", isinf(limit->reach.least) && isinf(limit->reach.most));
@@ -226,28 +296,31 @@ static void add_targets(cJSON *json, const struct irradiation *all, enum scene_d
     for (size_t r = 0; r < set->n_regions; r++) {
         if (!region_is_target(&set->regions[r]) || set->regions[r].n_voxels == 0)
             continue;
-        struct dose_choice choice = { .n_parts = 0 };
+        struct counted counted = { .choice = { .n_parts = 0 } };
+        const struct dose_choice *choice = &counted.choice;
         struct dvh dvh = { 0 };
         struct error why = { 0 };
         char unit[DOSE_UNIT_SIZE] = "";
-        bool is_known = find_histogram(all, &set->regions[r], quantity, "", &choice, &dvh, &why);
+        bool is_known =
+            find_counted(all, &set->regions[r], quantity, "", &counted, &why) && histogram_at(&counted, 1, &dvh, &why);
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "region", set->regions[r].id);
         cJSON_AddStringToObject(row, "quantity", dose_quantity_scene_word(quantity));
-        dose_add_population(row, all->snapshot, &choice, "",
+        dose_add_population(row, all->snapshot, choice, "",
                             scene_population(all->snapshot->plan, &all->snapshot->scene));
-        if (choice.n_parts > 0)
-            dose_shown_unit(&all->snapshot->plan->doses[choice.unit_of], choice.shown, choice.quantity, unit);
+        if (choice->n_parts > 0)
+            dose_shown_unit(&all->snapshot->plan->doses[choice->unit_of], choice->shown, choice->quantity, unit);
         cJSON_AddStringToObject(row, "unit", unit);
         for (size_t f = 0; f < sizeof figures / sizeof *figures; f++) {
             double least = NAN, most = NAN;
-            if (is_known && dvh.n > 0 && isfinite(output))
-                irradiation_figure(&dvh, &figures[f].metric, output, &least, &most);
+            if (is_known)
+                figure_at(&counted, &dvh, &figures[f].metric, output, &least, &most);
             add_range(row, figures[f].names, least, most);
         }
         reason_add_json(row, "reason", why.code ? why.text : NULL);
         cJSON_AddItemToArray(list, row);
         dvh_finish(&dvh);
+        counted_finish(&counted);
     }
 }
 
@@ -271,6 +344,7 @@ static bool add_limits(cJSON *json, const struct irradiation *all, struct error 
     for (size_t i = 0; i < scene->n_constraints; i++) {
         add_limit(list, all, scene->constraints[i].id, &limits[i], (int)i == first, output);
         dvh_finish(&limits[i].dvh);
+        counted_finish(&limits[i].counted);
     }
     add_targets(json, all, first >= 0 ? limits[first].constraint->quantity : SCENE_DOSE_QUANTITY_WEIGHTED, output);
     free(limits);
@@ -307,6 +381,9 @@ cJSON *answer_irradiation(struct question *question, struct derive *derived, str
                             "measured in blood. Doses grow in proportion to the output, so a limit of a dose is "
                             "reached at limit / figure, and one of a volume V_d at d / D_v. Univels of the population, "
                             "each with the dose at its centre and the weights of its region, or those chosen in the "
-                            "limit. The factor and the sum that the dose is shown with change nothing.");
+                            "limit. An isoeffective dose is not in proportion: it is computed at each output from the "
+                            "components, with repair during the time to it, the fields as one irradiation at a "
+                            "constant rate without pauses (Gonzalez and Santa Cruz 2012), and the output is found to "
+                            "0.01 %. The factor and the sum that the dose is shown with change nothing.");
     return json;
 }

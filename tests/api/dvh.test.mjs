@@ -26,6 +26,7 @@ before(async () => {
   fields.doses.push({ ...fields.doses[0], id: 'second', per: '30 seconds at 1e10 n/cm2/s' });
   fields.doses.push({ ...fields.doses[0], id: 'unsaid', per: '' });
   fields.doses.push({ ...fields.doses[0], id: 'fractions', per: 'fraction' });
+  fields.doses.push({ ...fields.doses[0], id: 'reactor', per: 'MW-min' });
   writeFileSync(join(folder, 'fields', 'plan.json'), JSON.stringify(fields));
   daemon = await startDaemon(skip ? { plans: [demo, folder] } : { plans: [demo, brain, folder] });
   await openPlan(daemon.url, 'phantom');
@@ -415,7 +416,6 @@ test('the irradiation time is where each limit is reached, the first of them end
     max: limit('brain', 'max', 'at-most', 12.5),
     volume: limit('brain', 'V10', 'at-most', 100),
     target: limit('tumour', 'D95%', 'at-least', 20),
-    iso: { ...limit('brain', 'mean', 'at-most', 7), quantity: 'isoeffective' },
   };
 
   // one field: figures of the histogram, which are per minute, say how many minutes each limit lasts
@@ -427,8 +427,7 @@ test('the irradiation time is where each limit is reached, the first of them end
   near(rowOf(one, 'max').units, 12.5 / brain15.max, 1e-6);
   assert.deepEqual([rowOf(one, 'volume').is_never, rowOf(one, 'volume').units], [true, null]);
   const first = rowOf(one, 'mean').units < rowOf(one, 'max').units ? 'mean' : 'max';
-  assert.deepEqual([one.first, one.is_certain], [first, false], 'the isoeffective limit may come first');
-  assert.match(rowOf(one, 'iso').reason, /isoeffective/);
+  assert.deepEqual([one.first, one.is_certain], [first, true]);
   assert.deepEqual(
     one.limits.filter((row) => row.is_first).map(({ id }) => id),
     [first],
@@ -449,8 +448,6 @@ test('the irradiation time is where each limit is reached, the first of them end
   near(target.mean, one.units * tumour15.mean, 1e-6);
   near(target.min, one.units * tumour15.min, 1e-6);
   near(rowOf(one, 'target').units, 20 / tumour15.metrics['D95%'], 1e-6);
-  delete constraints.iso;
-  assert.equal((await asked('irradiation', { constraints, dose: { blood_ppm: 15 } })).is_certain, true);
 
   // measured boron replaces the one that is shown, and neither factor nor sum changes anything
   const brain22 = await curve({ blood_ppm: 22 }, 'brain');
@@ -486,4 +483,24 @@ test('the irradiation time is where each limit is reached, the first of them end
   const counted = await asked('irradiation', { constraints, irradiation: { rate: 5, fields: { fractions: {} } } });
   assert.deepEqual([counted.output, counted.minutes], ['fraction', null]);
   near(rowOf(counted, 'mean').units, 7 / brain15.mean, 1e-6);
+
+  // an isoeffective dose is not in proportion: at the time that is found, the histogram has the figure of the limit
+  const weights = Object.fromEntries((await api('fields/dose?room=' + made)).json.weights.map(({ region }) => [region, { isoeffective }]));
+  const dose = { blood_ppm: 15, weights };
+  const iso = { ...limit('brain', 'mean', 'at-most', 7), quantity: 'isoeffective' };
+  const grown = await asked('irradiation', { constraints: { iso }, dose });
+  assert.deepEqual([grown.first, grown.is_certain, rowOf(grown, 'iso').unit], ['iso', true, 'Gy(IsoE)']);
+  const then = { ...dose, quantity: 'isoeffective', factor: grown.units, irradiation_min: grown.units };
+  near((await curve(then, 'brain')).mean, 7, 1e-3); // rows of a histogram are off by up to 0.1 %
+  near(grown.targets[1].d95, (await curve(then, 'tumour')).metrics['D95%'], 1e-3);
+  // a source that is twice as strong: the same output in half the time has less repair, so less of it is needed
+  const ofReactor = async (rate) =>
+    rowOf(await asked('irradiation', { constraints: { iso }, dose, irradiation: { rate, fields: { reactor: {} } } }), 'iso');
+  near((await ofReactor(1)).units, grown.units, 2e-4);
+  const fast = await ofReactor(2);
+  assert.ok(fast.units < grown.units * 0.9999 && fast.units > grown.units / 2, `${fast.units} of ${grown.units}`);
+  near(fast.minutes, fast.units / 2, 1e-12);
+  assert.match((await ofReactor(null)).reason, /the source's strength is needed, in a unit that fits MW-min/);
+  const noTime = await asked('irradiation', { constraints: { iso }, dose, irradiation: { fields: { fractions: {} } } });
+  assert.match(rowOf(noTime, 'iso').reason, /no time follows from a dose per fraction/);
 });

@@ -1,5 +1,6 @@
 /* Weighted sums of a dose by hand: which weights hold where, what is missing, where there is no value. */
 #include "core/derive/dose_extremes.h"
+#include "core/derive/dose_growth.h"
 #include "core/scene/dose_scale.h"
 #include "dose_presets.h"
 #include "tests/check.h"
@@ -341,7 +342,7 @@ static double steep_gamma(struct vec3 p)
 
 /* The doses of the components at a point, each tri-linear between its voxels, then as one photon dose D of equal
  * effect: alpha D + beta Gr D^2 = E by bisection, E as core/dose/isoeffective.h defines it. False: there is none. */
-static bool isoeffective_by_hand(const struct plan *plan, const struct isoeffective_set *set, double ppm,
+static bool isoeffective_by_hand(const struct plan *plan, const struct isoeffective_set *set, double ppm, double output,
                                  double minutes, struct vec3 p, double *value)
 {
     double d[3]; /* boron, fast, gamma */
@@ -349,6 +350,8 @@ static bool isoeffective_by_hand(const struct plan *plan, const struct isoeffect
         if (!volume_sample(plan->doses[0].components[c].values, p, &d[c]))
             return false;
     d[0] *= ppm;
+    for (int c = 0; c < 3; c++)
+        d[c] *= output;
     double tau[2] = { set->repair_fast_min, set->repair_slow_min }, g[2], g_photon[2];
     for (int i = 0; i < 2; i++) {
         double y = minutes / tau[i], x = set->photon_min / tau[i];
@@ -379,10 +382,9 @@ static bool isoeffective_by_hand(const struct plan *plan, const struct isoeffect
     return true;
 }
 
-static void components_are_interpolated_and_then_mapped_and_rows_differ_by_no_more_than_they_say(void **state)
+/* Brain and tumour in a steep dose; everywhere the parameters of one set. */
+static struct plan *make_steep(const struct isoeffective_set *set, struct scene *scene)
 {
-    (void)state;
-    const struct isoeffective_set *set = &isoeffective_sets[4]; /* with a beta of its own for each component */
     struct grid grid = made_cube_grid(48), coarse = dose_grid();
     struct plan *plan = made_plan(&grid, label, regions, 2);
     struct dose *dose = &plan->doses[plan->n_doses++];
@@ -391,15 +393,24 @@ static void components_are_interpolated_and_then_mapped_and_rows_differ_by_no_mo
     add(dose, DOSE_BORON, &coarse, steep_boron);
     add(dose, DOSE_FAST, &coarse, steep_fast);
     add(dose, DOSE_GAMMA, &coarse, steep_gamma);
-    struct scene scene;
-    scene_for_plan(plan, &scene);
-    scene.dose.quantity = SCENE_DOSE_QUANTITY_ISOEFFECTIVE;
-    snprintf(scene.dose.tissue, sizeof scene.dose.tissue, "brain");
-    for (size_t i = 0; i < scene.dose.n_weights; i++) {
-        snprintf(scene.dose.weights[i].value.isoeffective, sizeof scene.dose.weights[i].value.isoeffective, "%s",
+    scene_for_plan(plan, scene);
+    scene->dose.quantity = SCENE_DOSE_QUANTITY_ISOEFFECTIVE;
+    for (size_t i = 0; i < scene->dose.n_weights; i++) {
+        snprintf(scene->dose.weights[i].value.isoeffective, sizeof scene->dose.weights[i].value.isoeffective, "%s",
                  set->name);
-        scene.dose.weights[i].value.boron_ratio = 1;
+        scene->dose.weights[i].value.boron_ratio = 1;
     }
+    return plan;
+}
+
+static void components_are_interpolated_and_then_mapped_and_rows_differ_by_no_more_than_they_say(void **state)
+{
+    (void)state;
+    const struct isoeffective_set *set = &isoeffective_sets[4]; /* with a beta of its own for each component */
+    const struct grid coarse = dose_grid();
+    struct scene scene;
+    struct plan *plan = make_steep(set, &scene);
+    snprintf(scene.dose.tissue, sizeof scene.dose.tissue, "brain");
     struct snapshot *snapshot = show(plan, &scene);
     struct dose_scale scale;
     assert_true(dose_scale_of(snapshot, &scale));
@@ -416,7 +427,7 @@ static void components_are_interpolated_and_then_mapped_and_rows_differ_by_no_mo
                 at[axis] = (rand() / (double)RAND_MAX * 1.04 - 0.02) * coarse.size[axis] - 0.5;
             struct vec3 p = affine_point(&coarse.lps_mm_from_ijk, vec3(at[0], at[1], at[2]));
             bool is_there =
-                isoeffective_by_hand(plan, set, scene.dose.blood_ppm, scene.dose.irradiation_min, p, &expected);
+                isoeffective_by_hand(plan, set, scene.dose.blood_ppm, 1, scene.dose.irradiation_min, p, &expected);
             assert_int_equal(dose_field_value(field, p, &value), is_there);
             assert_int_equal(volume_sample(field->rows[0], p, &of_rows), is_there);
             if (!is_there)
@@ -437,7 +448,7 @@ static void components_are_interpolated_and_then_mapped_and_rows_differ_by_no_mo
                     part *= corner >> axis & 1 ? t : 1 - t;
                 }
                 has_all =
-                    isoeffective_by_hand(plan, set, scene.dose.blood_ppm, scene.dose.irradiation_min,
+                    isoeffective_by_hand(plan, set, scene.dose.blood_ppm, 1, scene.dose.irradiation_min,
                                          affine_point(&coarse.lps_mm_from_ijk, vec3(to[0], to[1], to[2])), &mapped);
                 corners += part * mapped;
             }
@@ -447,6 +458,64 @@ static void components_are_interpolated_and_then_mapped_and_rows_differ_by_no_mo
     }
     assert_true(worst_coarse > 0.02);
     dose_scale_finish(&scale);
+    snapshot_unref(snapshot);
+    plan_and_derived_destroy(plan);
+}
+
+/* At any output: the doses at the centres of a region's univels one by one. */
+static void a_growing_dose_is_counted_at_each_univel(void **state)
+{
+    (void)state;
+    const struct isoeffective_set *set = &isoeffective_sets[4];
+    static const double outputs[] = { 0.25, 1, 20, 300 };
+    struct scene scene;
+    struct plan *plan = make_steep(set, &scene);
+    struct snapshot *snapshot = show(plan, &scene);
+    const struct grid grid = made_cube_grid(48);
+    struct dose_choice choice;
+    struct error err = { 0 };
+    assert_true(dose_choice_of(snapshot, 0, SCENE_DOSE_QUANTITY_ISOEFFECTIVE, &choice, &err));
+    for (int region = 0; region < 2; region++) {
+        struct dose_growth *growth =
+            dose_growth_create(snapshot->derived, &choice, (size_t)region, POPULATION_OWN, &err);
+        assert_non_null(growth);
+        for (size_t o = 0; o < sizeof outputs / sizeof *outputs; o++) {
+            struct dvh dvh;
+            double n = 0, n_missing = 0, sum = 0, low = INFINITY, high = 0, minutes = 1.5 * outputs[o];
+            for (uint32_t at = 0; at < 48 * 48 * 48; at++) {
+                struct vec3 p = affine_point(&grid.lps_mm_from_ijk, vec3(at % 48, at / 48 % 48, at / (48 * 48)));
+                double value;
+                if ((int)label(p) != region + 1)
+                    continue;
+                if (isoeffective_by_hand(plan, set, scene.dose.blood_ppm, outputs[o], minutes, p, &value)) {
+                    n++;
+                    sum += value;
+                    low = fmin(low, value);
+                    high = fmax(high, value);
+                } else {
+                    n_missing++;
+                }
+            }
+            assert_true(dose_growth_histogram(growth, outputs[o], minutes, &dvh, &err));
+            assert_close(dvh.n, n, 0);
+            assert_close(dvh.n_missing, n_missing, 0);
+            assert_close(dvh.univel_cm3, grid_voxel_mm3(&grid) / 1000, 1e-12);
+            assert_close(dvh.sum, sum, 1e-5 * sum); /* components and doses are floats */
+            assert_close(dvh.low, low, 1e-5 * low);
+            assert_close(dvh.high, high, 1e-5 * high);
+            assert_true(region != 0 || n_missing > 100);
+            dvh_finish(&dvh);
+        }
+        dose_growth_destroy(growth);
+    }
+    choice.left_out[0] = 1;
+    assert_null(dose_growth_create(snapshot->derived, &choice, 0, POPULATION_OWN, &err));
+    assert_int_equal(err.code, ERROR_STATE);
+    err = (struct error){ 0 };
+    choice.left_out[0] = 0;
+    choice.row_of_region[1] = DOSE_NO_ROW;
+    assert_null(dose_growth_create(snapshot->derived, &choice, 1, POPULATION_OWN, &err));
+    assert_int_equal(err.code, ERROR_NOT_FOUND);
     snapshot_unref(snapshot);
     plan_and_derived_destroy(plan);
 }
@@ -463,6 +532,7 @@ int main(void)
         cmocka_unit_test(doses_are_summed_with_their_factors),
         cmocka_unit_test(the_isoeffective_dose_is_that_of_the_physical_doses_there),
         cmocka_unit_test(components_are_interpolated_and_then_mapped_and_rows_differ_by_no_more_than_they_say),
+        cmocka_unit_test(a_growing_dose_is_counted_at_each_univel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

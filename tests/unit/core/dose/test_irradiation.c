@@ -211,6 +211,148 @@ static void a_part_without_dose_gives_bounds(void **state)
     assert_true(n_open > 50);
 }
 
+/* ---- a dose that is not proportional ----------------------------------------------------------------------------- */
+
+/* Univels whose effect is a T + b T^2 after T minutes, without repair, and photons of alpha and beta: the dose D solves
+ * alpha D + beta D^2 = a T + b T^2, so both D(T) and T(D) are positive roots of a quadratic. */
+static const double alpha = 0.2, beta = 0.02;
+static double linear[N], square[N];
+static int n_asked;
+
+static double root(double first, double second, double effect)
+{
+    return (-first + sqrt(first * first + 4 * second * effect)) / (2 * second);
+}
+
+static double minutes_to(size_t univel, double dose)
+{
+    return root(linear[univel], square[univel], alpha * dose + beta * dose * dose);
+}
+
+static void make_univels(unsigned seed)
+{
+    srand(seed);
+    for (size_t i = 0; i < N; i++) {
+        linear[i] = 0.02 + 0.2 * rand() / RAND_MAX;
+        square[i] = 1e-4 + 4e-3 * rand() / RAND_MAX;
+    }
+}
+
+static double part_missing; /* of the univels */
+
+static bool grown(void *context, double output, struct dvh *dvh, struct error *err)
+{
+    struct grid grid = made_cube_grid(SIDE);
+    struct volume *labels = volume_create(&grid, VOXEL_U8, err), *dose = volume_create(&grid, VOXEL_F32, err);
+    (void)context;
+    n_asked++;
+    memset(labels->voxels, 1, N);
+    for (size_t i = 0; i < N; i++)
+        ((float *)dose->voxels)[i] = (double)i < part_missing * N
+                                         ? NAN
+                                         : (float)root(alpha, beta, linear[i] * output + square[i] * output * output);
+    volume_measure(dose);
+    const struct volume *rows[1] = { dose };
+    bool is_good = dvh_sweep(&(struct dvh_sweep){ .labels = labels, .rows = rows, .n_rows = 1 },
+                             &(struct dvh_label){ 1, 1 }, 1, dvh, err);
+    volume_unref(labels);
+    volume_unref(dose);
+    return is_good;
+}
+
+static int rising(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static struct irradiation_reach reach_growing(const char *word, bool is_at_most, double limit)
+{
+    struct dvh_metric metric = metric_of(word);
+    struct irradiation_reach reach;
+    struct error err = { 0 };
+    n_asked = 0;
+    if (!irradiation_reach_growing(grown, NULL, &metric, is_at_most, limit, &reach, &err))
+        fail_msg("%s: %s", word, err.text);
+    assert_in_range(n_asked, 1, 40);
+    return reach;
+}
+
+static void a_growing_dose_reaches_a_limit_at_the_root_of_the_quadratic(void **state)
+{
+    (void)state;
+    const double limits[] = { 0.05, 2, 12.5, 60 };
+    part_missing = 0;
+    for (unsigned seed = 1; seed <= 4; seed++)
+        for (size_t l = 0; l < sizeof limits / sizeof *limits; l++) {
+            double minutes[N], mean = 0, limit = limits[l];
+            char v[24];
+            make_univels(seed);
+            for (size_t i = 0; i < N; i++)
+                minutes[i] = minutes_to(i, limit);
+            qsort(minutes, N, sizeof *minutes, rising);
+            /* the hottest univel is the first to have the dose, the coldest the last; 1e-4 of the output, and a float
+             */
+            assert_near(reach_growing("max", true, limit).least, minutes[0], 1.1e-4 * minutes[0]);
+            assert_near(reach_growing("min", false, limit).least, minutes[N - 1], 1.1e-4 * minutes[N - 1]);
+            /* 300 of 1000 have it from the 300th on; a bin is 1/2048 of a dose that grows slower than the square */
+            const double least = minutes[N * 3 / 10 - 2] * (1 - 1e-3), most = minutes[N * 3 / 10 + 1] * (1 + 1e-3);
+            snprintf(v, sizeof v, "V%g", limit);
+            const double of_volume = reach_growing(v, true, 30).least,
+                         of_dose = reach_growing("D30%", true, limit).least;
+            assert_true(least <= of_volume && of_volume <= most);
+            assert_near(of_dose, of_volume, 2e-4 * of_volume);
+            struct irradiation_reach reach = reach_growing("mean", true, limit);
+            assert_true(reach.least == reach.most);
+            for (size_t i = 0; i < N; i++)
+                mean += root(alpha, beta, linear[i] * reach.least + square[i] * reach.least * reach.least) / N;
+            assert_near(mean, limit, 2e-4 * limit);
+        }
+}
+
+/* Every univel without a dose has it later than all others in the one extreme, and before them in the other. */
+static void a_growing_dose_with_a_part_unknown_has_bounds(void **state)
+{
+    (void)state;
+    make_univels(7);
+    part_missing = 0;
+    const double mean = reach_growing("mean", true, 8).least, median = reach_growing("D50%", true, 8).least;
+    part_missing = 0.2;
+    struct irradiation_reach reach = reach_growing("mean", true, 8);
+    assert_true(reach.least == 0 && mean < reach.most);
+    reach = reach_growing("D50%", true, 8);
+    assert_true(reach.least < median && median < reach.most);
+    assert_true(isinf(reach_growing("min", false, 8).most)); /* perhaps there is none at all */
+    part_missing = 0;
+}
+
+static void what_a_growing_dose_never_reaches_is_said(void **state)
+{
+    (void)state;
+    struct dvh_metric even = metric_of("HI"), hot = metric_of("D2cc"), mean = metric_of("mean");
+    struct irradiation_reach reach;
+    struct error err = { 0 };
+    make_univels(3);
+    assert_true(isinf(reach_growing("V10", true, 100).least));
+    assert_true(reach_growing("mean", true, 0).most == 0);
+    assert_false(irradiation_reach_growing(grown, NULL, &even, true, 1, &reach, &err));
+    assert_int_equal(err.code, ERROR_STATE);
+    err = (struct error){ 0 };
+    assert_false(irradiation_reach_growing(grown, NULL, &hot, true, 1, &reach, &err));
+    assert_int_equal(err.code, ERROR_RANGE);
+    part_missing = 1;
+    err = (struct error){ 0 };
+    assert_false(irradiation_reach_growing(grown, NULL, &mean, true, 1, &reach, &err));
+    assert_int_equal(err.code, ERROR_NOT_FOUND);
+    part_missing = 0;
+    for (size_t i = 0; i < N; i++)
+        linear[i] = square[i] = 0;
+    assert_true(isinf(reach_growing("mean", true, 8).least));
+    for (size_t i = 0; i < N; i++)
+        linear[i] = 1e-13; /* 8 Gy after 2.88 / 1e-13 min */
+    assert_true(isinf(reach_growing("max", true, 8).least));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -219,6 +361,9 @@ int main(void)
         cmocka_unit_test(at_the_output_the_figure_is_the_limit),
         cmocka_unit_test(limits_that_no_output_reaches_are_never_reached),
         cmocka_unit_test(a_part_without_dose_gives_bounds),
+        cmocka_unit_test(a_growing_dose_reaches_a_limit_at_the_root_of_the_quadratic),
+        cmocka_unit_test(a_growing_dose_with_a_part_unknown_has_bounds),
+        cmocka_unit_test(what_a_growing_dose_never_reaches_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
