@@ -26,6 +26,7 @@ const beside = {
   absent: (folder) => putDose(folder, anna, { ...second, plan: '1.2.999' }),
   unit: (folder) => putDose(folder, anna, { ...second, units: 'RELATIVE' }),
   per: (folder) => putDose(folder, anna, { ...second, summation: 'FRACTION' }),
+  unstated: (folder) => putDose(folder, { ...anna, frame: '' }, second),
   apart: (folder) => putDose(folder, anna, { ...second, origin: '500\\500\\500' }),
   'regions-frame': (folder) => putStructs(folder, elsewhere, { uid: '1.2.65', file: 'structs-z.dcm', name: 'Zother' }),
   'regions-patient': (folder) => putStructs(folder, berta, { uid: '1.2.65', file: 'structs-z.dcm', name: 'Zother' }),
@@ -116,7 +117,7 @@ async function picture(name, scene, kind, acceptances) {
 }
 
 const kinds = ['axial', '3d'];
-const isUsed = ['same'];
+const isUsed = ['same', 'unstated'];
 
 test('what does not fit changes no pixel of a pane or of a view into space', async () => {
   const expected = Object.fromEntries(await Promise.all(kinds.map(async (kind) => [kind, await picture('alone', asking('alone'), kind)])));
@@ -212,9 +213,11 @@ test('nor any number of any read-out', async () => {
     expected.value > 0 && expected.dvh.length === 1 && expected.surface[0] > 0 && expected.bands.length > 0,
     JSON.stringify(expected),
   );
-  const other = await numbers('same');
-  assert.ok(Math.abs(other.value - 2 * expected.value) < 1e-6, 'a dose that fits is added');
-  assert.equal(other.second, 1);
+  for (const name of isUsed) {
+    const other = await numbers(name);
+    assert.ok(Math.abs(other.value - 2 * expected.value) < 1e-6, `${name}: a dose that fits is added`);
+    assert.equal(other.second, 1);
+  }
   for (const name of Object.keys(beside).filter((each) => each !== 'alone' && !isUsed.includes(each))) {
     const found = await numbers(name);
     const free = name === 'plan' ? ['others'] : ['unit', 'per'].includes(name) ? ['others'] : []; // compared or read alone, not added
@@ -264,4 +267,92 @@ test("a person's word uses a dose of another frame in that picture alone; of ano
     acceptances: [{ thing: `dose:${patient}`, with: 'image:ct', reason: 'other', words }],
   });
   assert.equal(answer.status, 403, answer.text);
+});
+
+/** Each way that a dose is drawn, alone, and the kind of picture that has it. */
+const off = { wash: { visible: false }, lines: { visible: false }, surfaces: { visible: false }, coverage: { visible: false } };
+const layers = [
+  ['wash', 'axial', { wash: { visible: true } }],
+  ['line', 'axial', { lines: { visible: true } }],
+  ['coverage', 'axial', { coverage: { visible: true, region: 'box', low: 0.5, unit: 'dose' } }],
+  ['surface', '3d', { surfaces: { visible: true } }],
+  ['cap', '3d', { wash: { visible: true } }, { clip: { axial_high: { enabled: true, position_mm: 9 } } }],
+  [
+    'region',
+    '3d',
+    { wash: { visible: true } },
+    { regions: { box: { visible: true, texture: 'dose' } }, image: { slices: { axial: { visible: false } } } },
+  ],
+];
+const level = { value: 0.9, unit: 'dose', surface: true, line: true, wash: true };
+const showing = (id, dose, more = {}) => ({
+  ...more,
+  dose: { id, quantity: 'total', reference: { kind: 'value', value: 1 }, levels: { x: level }, ...off, ...dose },
+  ...(more.clip && { regions: { box: { visible: true } } }),
+});
+const without = (id, more = {}) =>
+  showing(id, {}, { ...more, ...(more.regions && { regions: { box: { visible: true, texture: 'none' } } }) });
+const strangers = ['frame', 'patient', 'absent', 'apart'];
+
+test('a dose that does not fit the image and is the one shown is on no picture in no way; one that fits is, in each', async () => {
+  for (const name of [...strangers, ...isUsed]) {
+    const id = idOf(plans[name].doses, first(name));
+    for (const [layer, kind, dose, more] of layers) {
+      const [drawn, empty] = [await picture(name, showing(id, dose, more), kind), await picture(name, without(id, more), kind)];
+      assert.equal(drawn.equals(empty), strangers.includes(name), `${name}, ${layer}`);
+    }
+  }
+});
+
+test('and no read-out nor snapshot of a room has anything of it, but the reason', async () => {
+  for (const name of [...strangers, ...isUsed]) {
+    const id = idOf(plans[name].doses, first(name)),
+      isStranger = strangers.includes(name),
+      reason = plans[name].fits.find(({ thing, with: image }) => thing === `dose:${id}` && image === 'image:ct')?.reason;
+    await openPlan(daemon.url, `p-${name}`);
+    const room = (await call(`${api}/rooms`, 'POST', { plan: `p-${name}` })).json.id;
+    const patch = (scene) => call(`${api}/rooms/${room}/scene`, 'PATCH', scene, { 'If-Match': '*' });
+    const snapshot = async () => {
+      const view = encodeURIComponent(JSON.stringify({ kind: 'axial', size_px: [160, 120] }));
+      const answer = await fetch(`${api}/rooms/${room}/snapshot?view=${view}`);
+      assert.equal(answer.status, 200);
+      return Buffer.from(await answer.arrayBuffer());
+    };
+    assert.equal((await patch(showing(id, {}))).status, 200);
+    const empty = await snapshot();
+    const limits = { c: { region: 'box', quantity: 'total', metric: 'mean', limit: 1 } };
+    const shown = { wash: { visible: true }, lines: { visible: true }, coverage: layers[2][2].coverage };
+    assert.equal((await patch({ ...showing(id, shown), constraints: limits })).status, 200);
+    assert.equal((await snapshot()).equals(empty), isStranger, `${name}, snapshot`);
+    const ask = async (path) => (await call(`${api}/plans/p-${name}/${path}${path.includes('?') ? '&' : '?'}room=${room}`)).json;
+    const at = 'x=14&y=14&z=9';
+    const [dvh, dose, dosed, probe, profile, coverage, kept, surface, lines] = await Promise.all(
+      [
+        'dvh',
+        'dose',
+        `dose/probe?${at}`,
+        `probe?${at}`,
+        `profile?beam=${plans.alone.beams[0].id}`,
+        'coverage',
+        'constraints',
+        'dose/levels/x/surface',
+        'dose/isolines?view={"kind":"axial"}',
+      ].map(ask),
+    );
+    const [limit] = kept.constraints;
+    const figures = {
+      dvh: dvh.curves.length,
+      drawn: dose.drawn,
+      probe: dosed.value ?? dosed.percent ?? dosed.components.find(({ value }) => value !== null)?.value,
+      'probe of all': probe.doses.find((one) => one.id === id)?.value,
+      profile: profile.curves.flatMap(({ values }) => values).find(Number.isFinite),
+      coverage: coverage.volume_cm3 ?? coverage.share,
+      limit: limit.value ?? limit.least ?? limit.most ?? limit.met,
+      surface: surface.triangles ?? surface.area_mm2,
+      lines: lines.levels.length,
+    };
+    for (const [read, value] of Object.entries(figures)) assert.equal(!value, isStranger, `${name}, ${read}: ${value}`);
+    if (isStranger) for (const answer of [dvh, dose, dosed, profile, coverage, kept, surface]) assert.equal(answer.reason, reason, name);
+    if (name === 'unstated') assert.match(dose.fit_reason, /^Dose “B” is used with CT: the files do not say whether/);
+  }
 });
