@@ -70,6 +70,64 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     assert.ok(!(await page.evaluate(() => document.documentElement.outerHTML)).includes('Quirin'));
   });
 
+  it('a name that is shown is masked after 15 minutes, and where nobody has looked at the page for 5', async () => {
+    await page.evaluate(() => {
+      const own = { setTimeout: window.setTimeout, clearTimeout: window.clearTimeout },
+        late = new Map(); // timers of a minute and more: passes() is their clock
+      window.setTimeout = (call, ms = 0, ...rest) => {
+        if (ms < 60000) return own.setTimeout.call(window, call, ms, ...rest);
+        late.set(-late.size - 1, { call, ms });
+        return -late.size;
+      };
+      window.clearTimeout = (id) => (late.has(id) ? late.set(id, null) : own.clearTimeout.call(window, id));
+      window.passes = (minutes) => {
+        const due = [...late].filter(([, timer]) => timer?.ms === minutes * 60000);
+        for (const [id, { call }] of due) late.set(id, null) && call();
+        return due.length;
+      };
+      window.looksAway = (isHidden) => {
+        Object.defineProperty(document, 'hidden', { configurable: true, value: isHidden });
+        document.dispatchEvent(new Event('visibilitychange'));
+      };
+      window.asBefore = () => {
+        Object.assign(window, own);
+        delete document.hidden;
+      };
+    });
+    const show = async () => {
+      if ((await page.locator('.patient-card').count()) === 0) await page.locator('.patient-button').click();
+      await page.getByRole('button', { name: 'Show to me' }).click();
+      await shows(page.locator('.patient-button'), 'ZWEIFEL, Quirin');
+    };
+    const after = (minutes) => page.evaluate((n) => window.passes(n), minutes);
+    const looksAway = (isHidden) => page.evaluate((is) => window.looksAway(is), isHidden);
+    const masked = async () => {
+      await shows(page.locator('.patient-button'), 'Q. Z. …419');
+      assert.ok(!(await page.evaluate(() => document.documentElement.outerHTML)).includes('Quirin'));
+    };
+    try {
+      await show();
+      assert.equal(await after(15), 1);
+      await masked();
+      await show();
+      assert.equal(await after(5), 0); // somebody looks at it
+      await looksAway(true);
+      await looksAway(false); // and is back in time
+      assert.equal(await after(5), 0);
+      await shows(page.locator('.patient-button'), 'ZWEIFEL, Quirin');
+      await looksAway(true);
+      assert.equal(await after(5), 1);
+      await masked();
+      assert.equal(await after(15), 0); // nothing is left to wait for
+      await looksAway(false);
+      await masked();
+      await looksAway(true); // masked: nobody waits
+      assert.equal(await after(5), 0);
+    } finally {
+      await page.evaluate(() => window.asBefore());
+    }
+  });
+
   it('a wall of the room names the patient when that is asked for it, and is masked again by the same button', async () => {
     const room = page.url().split('/').pop();
     const { token: link } = (await call(`${world.daemon.url}/api/v1/rooms/${room}/links`, 'POST', { role: 'wall', expires_s: 600 })).json;
