@@ -73,6 +73,9 @@ export const tours = {
     await page.locator('[data-plan="phantom"] .as-text').click();
     await page.locator('.load-report .report').waitFor();
     await shot(page, 'start');
+    await button(page, 'Upload').click();
+    await page.locator('.upload-card').waitFor();
+    await look(page);
     await page
       .locator('input[aria-label="Files of a plan"]')
       .setInputFiles({ name: 'head.tar', mimeType: 'application/x-tar', buffer: Buffer.alloc(1024) });

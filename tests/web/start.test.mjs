@@ -400,6 +400,9 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         await page.locator('button', { hasText: 'Join a room' }).click();
         await check('joining');
         await page.keyboard.press('Escape');
+        await page.locator('.banner button', { hasText: 'Upload' }).click();
+        await check('choosing files');
+        await page.keyboard.press('Escape');
         await page.route('**/api/v1/plans/phantom/open', (route) =>
           route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }),
         );
@@ -448,7 +451,9 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     });
 
   once('every control is reached by the keyboard in the order of the page, with a ring around it', async () => {
+    await openPlan(world.daemon.url, 'phantom'); // its report has links
     const page = await newPage();
+    await page.locator('.load-report .report a').first().waitFor();
     await page.evaluate(() => document.activeElement.blur());
     const seen = [];
     for (let i = 0; i < 80; i++) {
@@ -479,8 +484,18 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
       ),
     );
     const names = seen.map(({ name }) => name);
-    for (const name of ['Find a plan', 'Join a room', 'Your name, as others in a room see it', 'Choose files', 'Choose a folder'])
+    for (const name of ['Find a plan', 'Join a room', 'Your name, as others in a room see it', 'Upload'])
       assert.ok(names.includes(name), `${name} is among ${names.join(' | ')}`);
+    await page.locator('.banner button', { hasText: 'Upload' }).focus();
+    await page.keyboard.press('Enter');
+    await page.locator('.upload-card').waitFor();
+    for (const name of ['Choose files', 'Choose a folder']) {
+      await page.keyboard.press('Tab');
+      assert.equal(await page.evaluate(() => document.activeElement.textContent.trim()), name);
+    }
+    await page.keyboard.press('Escape');
+    await page.locator('.upload-card').waitFor({ state: 'hidden' });
+    assert.equal(await page.evaluate(() => document.activeElement.textContent.trim()), 'Upload');
     await page.context().close();
   });
 

@@ -14,7 +14,7 @@ export const say = sentences('start.later', {
   uploads: 'Uploads',
   always: 'Always',
   noPlans: 'Not plans',
-  aside: 'Load report and upload',
+  aside: 'Load report',
   research: 'Research use. Not for diagnosis or treatment decisions.',
   tryingAgain: 'Trying again every few seconds.',
   full: 'The server is full',

@@ -19,7 +19,7 @@ import { addressOfPlace, placeOfAddress, places } from './places.js';
 import { planList } from './plan_list.js';
 import { refusalOf } from './plan_row.js';
 import { reportLines } from '../../parts/report.js';
-import { dropZone, listenDrops } from './upload.js';
+import { listenDrops, uploadButton } from './upload.js';
 
 // what main.js gives the page, and nothing else needs
 export { sendPlan } from '../../net/upload.js';
@@ -115,11 +115,10 @@ const page = (state, uploads, meetings, world) => {
   return html`<div class="start">
   <header class="banner">${brand()}
     <label class="search" data-keys="/">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(event) => state.show({ search: event.target.value })}><kbd aria-hidden="true">/</kbd></label><span class="grow"></span>
-    ${join(state, enter)}${lookButton()}${session.value?.who() ?? nameButton(state, ownName)}</header>
+    ${uploadButton(uploads, state.version.value?.max_upload_bytes)}${join(state, enter)}${lookButton()}${session.value?.who() ?? nameButton(state, ownName)}</header>
   ${places(state, meetings)}
   <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${isToday ? meetingsToday(meetings, { hasGuests: Boolean(session.value?.facts.value.guest_links) }) : nothing}${planList(state, uploads, world)}${isToday ? roomsList(state, ownName) : nothing}</main>
-  <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div>
-    ${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
+  <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div></aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">${say.research}</b></footer>
   ${deleteDialog(state, ownName)}</div>`;
 };

@@ -1,4 +1,4 @@
-// The area to drop a plan on, and the list of uploads.
+// The button of the banner that opens the area to drop a plan on, and the list of uploads.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { repeat } from '../../../lib/directives/repeat.js';
@@ -11,6 +11,7 @@ import { say } from './later_words.js';
 
 function take(uploads, files) {
   uploads.error.value = files.length ? '' : say.noFile;
+  uploads.isOpen.value = false;
   if (files.length) uploads.offer(bodyOf(files));
 }
 
@@ -48,7 +49,22 @@ export function listenDrops(uploads, openPicture = async () => false, target = g
   };
 }
 
-export function dropZone(uploads, limit) {
+/** Its card also stands while something is dragged over the page, and while nothing could be read of what was chosen. */
+export function uploadButton(uploads, limit) {
+  const isShown = uploads.isOpen.value || uploads.isOver.value || uploads.error.value !== '';
+  const show = (isOpen) => {
+    uploads.error.value = '';
+    uploads.isOpen.value = isOpen;
+  };
+  const onKey = (event) => {
+    if (event.key !== 'Escape' || !isShown) return;
+    show(false);
+    event.currentTarget.querySelector('button').focus();
+  };
+  return html`<span class="anchor" @keydown=${onKey}><button aria-expanded=${isShown} @click=${() => show(!isShown)}>${icon('upload')}<span>${say.upload}</span></button><div class="popover upload-card" ?hidden=${!isShown}>${dropZone(uploads, limit)}</div></span>`;
+}
+
+function dropZone(uploads, limit) {
   const chosen = (event) => {
     take(uploads, filesOfInput(event.target.files));
     event.target.value = '';

@@ -24,6 +24,7 @@ export class UploadsState {
     this.limit = limit;
     this.arrived = arrived;
     this.rows = signal([]); // {key, name, bytes, sent, job, error, state: asking (for a name) | sending | working | failed}; name stays in this page
+    this.isOpen = signal(false); // the card to choose files in
     this.isOver = signal(false); // something is being dragged over the page
     this.error = signal(''); // an error in choosing, before anything was sent
   }
