@@ -139,7 +139,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     assert.deepEqual(await findings(late), []);
     await shoot(late, 'bookmark-gone');
     await late.getByRole('link', { name: 'All plans' }).click();
-    await late.getByText('Drop a plan here').waitFor();
+    await late.getByRole('button', { name: 'Upload' }).waitFor();
     await late.context().close();
     assert.deepEqual(world.errors, []);
     await page.context().close();

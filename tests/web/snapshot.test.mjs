@@ -118,7 +118,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
 
     // the same from the start page
     await page.goto(`${world.daemon.url}/#/`);
-    await page.getByText('Drop a plan here').waitFor();
+    await page.getByRole('button', { name: 'Upload' }).waitFor();
     await drop(page, bytes);
     await page.getByText('Scene and view are as in the picture').waitFor();
     const again = (await page.evaluate(() => location.pathname)).split('/')[2];
