@@ -127,7 +127,7 @@ static double quotient(double dose, double per_unit)
     return per_unit > 0 ? dose / per_unit : INFINITY;
 }
 
-/* What a limit waits for. */
+/* The wait of a limit. */
 struct awaited {
     struct dvh_metric metric; /* of a dose */
     double dose, least, most; /* the dose, and the bounds of the metric now */

@@ -89,7 +89,7 @@ static void find_output(struct irradiation *all)
 
 /* ---- one figure ------------------------------------------------------------------------------------------------- */
 
-/* What the figures of a region are counted in. */
+/* The unit and quantity of the figures of a region. */
 struct counted {
     const struct irradiation *all;
     size_t region;
