@@ -341,7 +341,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
       const ends = page.locator('.chart-ends', { hasText: /0\.9(79|80|81) min at 1e10 n\/cm²\/s/ });
       await ends.waitFor();
       assert.match(await ends.textContent(), /brain max ≤ [\d.]+ Gy\(w\) is reached first.*A limit that is not known may come before it/s);
-      assert.match(await page.locator('[data-until="c"]').textContent(), /not known: the isoeffective dose/);
+      assert.match(await page.locator('[data-until="c"]').textContent(), /not known: no tissue has parameters of the isoeffective dose/);
       await page.locator('.chart-irradiation').getByLabel('Boron in blood, measured', { exact: true }).fill('30');
       await page.keyboard.press('Tab');
       await page.locator('.chart-irradiation', { hasText: 'boron 30.0 ppm in blood, measured' }).waitFor();
