@@ -43,7 +43,8 @@ static cJSON *limit_words(const cJSON *limit)
 static void add_end(struct paper *paper, const cJSON *irradiation)
 {
     char units[PAPER_NUMBER], minutes[PAPER_NUMBER];
-    const bool has_minutes = isfinite(number_of(irradiation, "minutes"));
+    const bool is_time = strncmp(text_of(irradiation, "output"), "min", 3) == 0, /* the minutes stand there already */
+        has_minutes = !is_time && isfinite(number_of(irradiation, "minutes"));
     if (!json_text(irradiation, "first")) {
         block_text(paper, written_format("No known limit ends the irradiation. %.300s", text_of(irradiation, "reason")),
                    "warn");

@@ -269,6 +269,13 @@ static void put_word(const struct sheet *sheet, const char *text, double x, doub
     g_object_unref(layout);
 }
 
+/* A name behind its sign also stands at the left when it is written from right to left. */
+static void stand_left(PangoLayout *layout)
+{
+    if (pango_layout_get_direction(layout, 0) == PANGO_DIRECTION_RTL)
+        pango_layout_set_alignment(layout, PANGO_ALIGN_RIGHT); /* auto_dir: the end of the line, which is the left */
+}
+
 static void set_dash(const struct sheet *sheet, int dash)
 {
     static const double dashes[6][4] = { { 1, 0, 1, 0 },   { 5, 2.5, 5, 2.5 }, { 1.5, 2, 1.5, 2 },
@@ -341,7 +348,7 @@ static void draw_key(struct sheet *sheet, const cJSON *curves)
 {
     const struct ink ink = { 7, dark, false, false, false };
     const cJSON *curve;
-    double x = sheet->left;
+    double x = sheet->left, line = 10;
     cJSON_ArrayForEach(curve, curves)
     {
         char text[400];
@@ -351,12 +358,16 @@ static void draw_key(struct sheet *sheet, const cJSON *curves)
                        text_of(curve, "name"), missing);
         PangoLayout *layout = sheet_text(sheet, text, &ink, sheet->right - sheet->left - 30);
         PangoRectangle place;
+        stand_left(layout);
         pango_layout_get_pixel_extents(layout, NULL, &place);
         if (x > sheet->left && x + place.width + 40 > sheet->right) {
             x = sheet->left;
-            sheet->y += 10;
-            sheet_need(sheet, 12);
+            sheet->y += line;
+            line = 10;
         }
+        if (x == sheet->left) /* as a rule one line; a long name has more */
+            sheet_need(sheet, fmax(12, layout_height(layout)));
+        line = fmax(line, layout_height(layout) + 1);
         cairo_set_source_rgb(sheet->cairo, (rgb >> 16 & 0xff) / 255.0, (rgb >> 8 & 0xff) / 255.0, (rgb & 0xff) / 255.0);
         set_dash(sheet, int_of(curve, "dash"));
         cairo_set_line_width(sheet->cairo, 1.2);
@@ -368,7 +379,7 @@ static void draw_key(struct sheet *sheet, const cJSON *curves)
         x += place.width + 40;
         g_object_unref(layout);
     }
-    sheet->y += 12;
+    sheet->y += line + 2;
 }
 
 static void draw_chart(struct sheet *sheet, const cJSON *block)
@@ -432,6 +443,7 @@ static double draw_caption(const struct sheet *sheet, const cJSON *caption, doub
         const double chip = rgb[0] ? 9 : 0;
         PangoLayout *layout = sheet_text(sheet, text_of(part, "text"), &ink, width - chip);
         PangoRectangle place;
+        stand_left(layout);
         pango_layout_get_pixel_extents(layout, NULL, &place);
         if (at > x && at + chip + place.width > x + width) {
             at = x;

@@ -21,6 +21,15 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
   execFileSync(join(bin, 'beamroom'), ['phantom', join(folder, 'small'), '--size', '48x48x32']);
   for (const name of ['other', 'third']) cpSync(join(folder, 'small'), join(folder, name), { recursive: true });
+  cpSync(join(folder, 'small'), join(folder, 'names'), { recursive: true });
+  const labels = JSON.parse(readFileSync(join(folder, 'names', 'labels.json'), 'utf8'));
+  for (const [i, name] of [
+    'Scalp_without_a_blank_'.repeat(6),
+    'Brain without the second target, drawn later, '.repeat(2),
+    'الهدف السريري للورم الأرومي الدبقي',
+  ].entries())
+    labels.labels[[0, 2, 3][i]].name = name.slice(0, 120);
+  writeFileSync(join(folder, 'names', 'labels.json'), JSON.stringify(labels));
   putWhole(join(folder, 'case-1'), quirin, { approval: 'APPROVED', label: 'BNCT-2' });
   await start('Europe/Helsinki');
 });
@@ -223,6 +232,29 @@ function read(pdf) {
     images: execFileSync('pdfimages', ['-list', file], { encoding: 'utf8' }).split('\n').slice(2, -1),
   };
 }
+
+test('on paper no word lies on another, whatever the regions are called', async () => {
+  const { client } = await enter('names', { dose: { wash: { visible: true } } });
+  const item = await put(client, 'decision', { decision: 'accept', text: 'As shown' });
+  for (const word of ['a4', 'letter']) {
+    const file = join(data, 'names.pdf');
+    writeFileSync(file, (await picture(`${api}/records/${item.id}/record.pdf?paper=${word}`)).bytes);
+    const pages = execFileSync('pdftotext', ['-bbox', file, '-'], { encoding: 'utf8', maxBuffer: 1 << 26 })
+      .split('<page ')
+      .slice(1);
+    assert.ok(pages.length > 3);
+    for (const page of pages) {
+      const words = [...page.matchAll(/<word xMin="(.+?)" yMin="(.+?)" xMax="(.+?)" yMax="(.+?)">(.*?)<\/word>/g)].map(([, ...at]) => at);
+      for (const [i, [x0, y0, x1, y1, text]] of words.entries())
+        for (const [u0, v0, u1, v1, other] of words.slice(i + 1)) {
+          const across = Math.min(x1, u1) - Math.max(x0, u0);
+          const down = Math.min(y1, v1) - Math.max(y0, v0);
+          // boxes hold room above and below the letters: lines may share a third of it
+          assert.ok(across < 1 || down < 0.35 * Math.min(y1 - y0, v1 - v0), `${word}: “${text}” lies on “${other}”`);
+        }
+    }
+  }
+});
 
 test('the server draws the record as PDF: the same pages each time, every script, identity and number on each page', async () => {
   const { client } = await enter('third');
