@@ -101,15 +101,21 @@ void tls_link_end(struct tls_link *link)
 
 /* ---- to the client ---------------------------------------------------------------------------------------------- */
 
-/* Tells the client that no more comes: in TLS, and below it. */
+/* Tells the client that no more comes: in TLS, and below it. Where the socket is full, once it takes more: an end below
+ * TLS alone is to the client an answer that was cut off. */
 static void tell_end(struct tls_link *link)
 {
     if (link->is_told)
         return;
+    SSL *ssl = lws_get_ssl(link->lws);
+    ERR_clear_error();
+    int told = SSL_shutdown(ssl), reason = told < 0 ? SSL_get_error(ssl, told) : SSL_ERROR_NONE;
+    ERR_clear_error();
+    if (reason == SSL_ERROR_WANT_WRITE) {
+        (void)lws_callback_on_writable(link->lws);
+        return;
+    }
     link->is_told = true;
-    ERR_clear_error();
-    (void)SSL_shutdown(lws_get_ssl(link->lws));
-    ERR_clear_error();
     (void)shutdown(link->client, SHUT_WR);
     link->late_us = clock_now_us() + TLS_LINGER_MS * INT64_C(1000);
 }
@@ -201,8 +207,11 @@ static void pass_down(struct ev_loop *loop, struct ev_io *watcher, int events)
 /* The client takes more. Returns non-zero when the socket is to be closed. */
 static int pass_kept_down(struct tls_link *link)
 {
-    if (link->n_to_client == 0)
+    if (link->n_to_client == 0) {
+        if (link->stage == TLS_ENDING)
+            tell_end(link);
         return 0;
+    }
     ssize_t n_taken = send_to_client(link, link->to_client, link->n_to_client);
     if (n_taken < 0)
         return -1;
