@@ -306,7 +306,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
   };
   const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
 
-  once(
+  later(
     'a point follows the mouse while it is dragged, and the drag is one step to undo; a double click adds one; presets and switches are set',
     async () => {
       const { page, centre, valueAt, opacityAt, changed, box, image } = await openVolume();

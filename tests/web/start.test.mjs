@@ -163,7 +163,25 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.context().close();
   });
 
-  once('a meeting is made, gets cases, is put in order by keys and by drag, loses a case, and is gone into', async () => {
+  later('a plan that is not loaded has no thumbnail and is not loaded for one; a loaded plan has one', async () => {
+    const page = await newPage();
+    const thumbnail = page.locator('[data-plan="phantom"] .thumb img');
+    await page.waitForResponse(/\/api\/v1\/plans\/search$/); // a second list
+    assert.equal(await thumbnail.count(), 0);
+    assert.equal((await call(`${world.daemon.url}/api/v1/plans/phantom`)).json.state, 'not-loaded');
+    await openPlan(world.daemon.url, 'phantom');
+    await thumbnail.waitFor();
+    assert.deepEqual(
+      await thumbnail.evaluate(async (image) => {
+        await image.decode();
+        return [image.naturalWidth, image.naturalHeight];
+      }),
+      [192, 116],
+    );
+    await page.context().close();
+  });
+
+  later('a meeting is made, gets cases, is put in order by keys and by drag, loses a case, and is gone into', async () => {
     const page = await newPage();
     await page.getByRole('button', { name: 'New meeting' }).click();
     await page.getByLabel('Name of the meeting').fill('Tumour board');
@@ -255,24 +273,6 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     assert.equal((await call(at, 'DELETE')).status, 204);
     await call(`${world.daemon.url}/api/v1/rooms/${running.cases[0].room}`, 'DELETE');
     await call(`${world.daemon.url}/api/v1/rooms/${room}`, 'DELETE');
-    await page.context().close();
-  });
-
-  later('a plan that is not loaded has no thumbnail and is not loaded for one; a loaded plan has one', async () => {
-    const page = await newPage();
-    const thumbnail = page.locator('[data-plan="phantom"] .thumb img');
-    await page.waitForResponse(/\/api\/v1\/plans\/search$/); // a second list
-    assert.equal(await thumbnail.count(), 0);
-    assert.equal((await call(`${world.daemon.url}/api/v1/plans/phantom`)).json.state, 'not-loaded');
-    await openPlan(world.daemon.url, 'phantom');
-    await thumbnail.waitFor();
-    assert.deepEqual(
-      await thumbnail.evaluate(async (image) => {
-        await image.decode();
-        return [image.naturalWidth, image.naturalHeight];
-      }),
-      [192, 116],
-    );
     await page.context().close();
   });
 
