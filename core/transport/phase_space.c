@@ -90,7 +90,8 @@ static size_t draw_start(const struct drawing *drawing, float position[3], float
 
 enum flight { FLIGHT_OUT, FLIGHT_LOST, FLIGHT_HOLE, FLIGHT_WALL };
 
-/* Flies to a tentative collision; mean_cm is the shortest mean free path in the delimiter. */
+/* Flies to a tentative collision; mean_cm is the shortest mean free path in the delimiter. Between the disk and a
+ * shorter delimiter is air, as in its hole. */
 static enum flight fly(const struct beam_source *source, float position[3], const float direction[3], double mean_cm,
                        struct random *random)
 {
@@ -98,13 +99,15 @@ static enum flight fly(const struct beam_source *source, float position[3], cons
     float step = (float)(-log((double)random_unit(random)) * mean_cm), z = position[2] + direction[2] * step;
     if (z > 0)
         return FLIGHT_OUT;
-    if (z < (float)-delimiter->length_cm - .05F)
+    if (z < (float)-fmax(delimiter->length_cm, source->to_aperture_cm) - .05F)
         return FLIGHT_LOST;
     for (int i = 0; i < 3; i++)
         position[i] += direction[i] * step;
     double radius = hypot((double)position[0], (double)position[1]);
     if (radius > FARTHEST_CM + 4)
         return FLIGHT_LOST;
+    if (z < (float)-delimiter->length_cm - .05F)
+        return FLIGHT_HOLE;
     double hole = delimiter->exit_radius_cm - (delimiter->entrance_radius_cm - delimiter->exit_radius_cm) *
                                                   (double)position[2] / delimiter->length_cm;
     return radius < hole ? FLIGHT_HOLE : FLIGHT_WALL;
@@ -224,6 +227,18 @@ static bool draw_list(struct particle_list *list, struct drawing *drawing, size_
     return true;
 }
 
+static bool check_source(const struct beam_source *source, struct error *err)
+{
+    if (source->radius_cm > FARTHEST_CM)
+        return error_set(err, ERROR_RANGE, "source %.100s: a disk of %g cm in radius, at most %g expected",
+                         source->name, source->radius_cm, FARTHEST_CM);
+    if (source->to_aperture_cm < source->delimiter.length_cm - .1)
+        return error_set(err, ERROR_RANGE,
+                         "source %.100s: its disk is %g cm from the aperture plane, within the delimiter of %g cm",
+                         source->name, source->to_aperture_cm, source->delimiter.length_cm);
+    return true;
+}
+
 bool phase_space_of_source(struct phase_space *space, const struct beam_source *source, size_t n_neutrons,
                            size_t n_photons, uint64_t seed, int n_threads, struct error *err)
 {
@@ -231,6 +246,8 @@ bool phase_space_of_source(struct phase_space *space, const struct beam_source *
     if (n_neutrons > PHASE_SPACE_MAX_PARTICLES || n_photons > PHASE_SPACE_MAX_PARTICLES)
         return error_set(err, ERROR_LIMIT, "a list of %zu particles, at most %d expected",
                          n_neutrons > n_photons ? n_neutrons : n_photons, PHASE_SPACE_MAX_PARTICLES);
+    if (!check_source(source, err))
+        return false;
     struct particle_tables *tables = mem_array(1, sizeof *tables, UINT64_MAX, err);
     if (!tables)
         return false;

@@ -28,7 +28,8 @@ struct phase_space {
  * less weight.
  *
  *   n_neutrons, n_photons  rounded up to a multiple of PHASE_SPACE_LANES; photons only if the source has any
- *   errors                 ERROR_RANGE a source that lets nothing through; ERROR_LIMIT; ERROR_MEMORY
+ *   errors                 ERROR_RANGE a source that lets nothing through, a disk of more than 30 cm in
+ *                          radius or within the delimiter; ERROR_LIMIT; ERROR_MEMORY
  *   thread                 any; equal for a seed and any number of threads */
 NODISCARD bool phase_space_of_source(struct phase_space *space, const struct beam_source *source, size_t n_neutrons,
                                      size_t n_photons, uint64_t seed, int n_threads, struct error *err);

@@ -39,7 +39,8 @@ static bool get_numbers(const struct json_place *place, const cJSON *object, con
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key);
     size_t there = cJSON_IsArray(list) ? (size_t)cJSON_GetArraySize(list) : 0;
     char what[96];
-    snprintf(what, sizeof what, "expected a list of %zu numbers from %g to %g", n ? n : most, low, high);
+    snprintf(what, sizeof what, "expected a list of %s%zu numbers from %g to %g", n ? "" : "1 to ", n ? n : most, low,
+             high);
     if (there == 0 || there > most || (n > 0 && there != n))
         return place_fail(place, ERROR_FORMAT, key, what);
     size_t i = 0;
@@ -134,6 +135,14 @@ static bool get_delimiter(const struct json_place *up, const cJSON *object, stru
     return true;
 }
 
+/* Without its distance the disk would lie at the exit of the delimiter, and nothing would pass that. */
+static bool check_distance(const struct json_place *up, const cJSON *spectrum, const struct beam_source *source)
+{
+    struct json_place place = inside(up, "spectrum");
+    return source->delimiter.length_cm <= 0 || cJSON_GetObjectItemCaseSensitive(spectrum, "distance_mm") ||
+           place_fail(&place, ERROR_RANGE, "distance_mm", "is needed with a delimiter: from the disk to its exit");
+}
+
 static bool get_elements(const struct json_place *place, const cJSON *object, struct beam_file_material *material)
 {
     const cJSON *weights = cJSON_GetObjectItemCaseSensitive(object, "weights");
@@ -215,7 +224,8 @@ static bool read(const struct json_place *place, const cJSON *root, struct beam_
            place_text(place, root, "per", file->per, sizeof file->per) &&
            (spectrum ? get_source(place, spectrum, &file->source)
                      : place_path(place, root, "source", true, file->source_path)) &&
-           get_delimiter(place, root, &file->source.delimiter) && get_pose(place, root, file) &&
+           get_delimiter(place, root, &file->source.delimiter) &&
+           (!spectrum || check_distance(place, spectrum, &file->source)) && get_pose(place, root, file) &&
            get_materials(place, root, file);
 }
 

@@ -474,6 +474,51 @@ static void a_step_that_is_cancelled_at_work_leaves_nothing_of_it(void **state)
     drop(world);
 }
 
+/* Closed form: parallel neutrons in a hole as wide as their disk meet nothing, however far the disk is from the
+ * delimiter, and the air between takes none of them. */
+static void air_before_a_short_delimiter_takes_no_neutron(void **state)
+{
+    (void)state;
+    struct beam_source source = { .name = "made", .n_cuts = 1, .radius_cm = 3, .to_aperture_cm = 50 };
+    source.delimiter = (struct beam_delimiter){ 10, 3.01, 3.01, 200 };
+    source.neutrons =
+        (struct beam_spectrum){ 3, { 1e6, 1e5, 10, 1 }, { .5, 0, .5 }, { { 1 }, { 1 }, { 1 } }, 1e6, true };
+    struct phase_space beam;
+    struct error err = { 0 };
+    if (!phase_space_of_source(&beam, &source, 32000, 0, 3, 2, &err))
+        fail_msg("%s", err.text);
+    assert_near(beam.neutrons.per_unit, 1e6 * M_PI * 9, 1e-9);
+    double slow = 0, all = 0;
+    for (size_t i = 0; i < beam.neutrons.n; i++) {
+        const struct particle *particle = &beam.neutrons.particles[i];
+        all += (double)particle->weight;
+        slow += particle->energy < 20 ? (double)particle->weight : 0;
+        assert_true(hypotf(particle->x_cm, particle->y_cm) <= 3.001F);
+    }
+    assert_near(all, (double)beam.neutrons.n, .05);
+    assert_close(slow / all, .5, .04); /* 32,000 of which a thirtieth is slow: three standard deviations */
+    phase_space_finish(&beam);
+}
+
+static void a_disk_within_its_delimiter_is_refused_with_both_lengths(void **state)
+{
+    (void)state;
+    struct beam_source source = { .name = "made", .n_cuts = 1, .radius_cm = 3, .to_aperture_cm = 4.8 };
+    source.delimiter = (struct beam_delimiter){ 5, 3, 3, 200 };
+    source.neutrons = (struct beam_spectrum){ 1, { 10, 1 }, { 1 }, { { 1 } }, 1e6, true };
+    struct phase_space beam;
+    struct error err = { 0 };
+    assert_false(phase_space_of_source(&beam, &source, 1600, 0, 3, 2, &err));
+    assert_string_equal(err.text,
+                        "source made: its disk is 4.8 cm from the aperture plane, within the delimiter of 5 cm");
+    source.to_aperture_cm = 4.95; /* FiR 1's source is half a millimetre within its delimiter */
+    assert_true(phase_space_of_source(&beam, &source, 1600, 0, 3, 2, &err));
+    phase_space_finish(&beam);
+    source.radius_cm = 31;
+    assert_false(phase_space_of_source(&beam, &source, 1600, 0, 3, 2, &err));
+    assert_string_equal(err.text, "source made: a disk of 31 cm in radius, at most 30 expected");
+}
+
 static void input_beyond_its_limits_is_refused_with_what_was_expected(void **state)
 {
     (void)state;
@@ -526,6 +571,8 @@ int main(void)
         cmocka_unit_test(another_pose_begins_anew),
         cmocka_unit_test(a_cancelled_step_leaves_the_run_as_it_was),
         cmocka_unit_test(a_step_that_is_cancelled_at_work_leaves_nothing_of_it),
+        cmocka_unit_test(air_before_a_short_delimiter_takes_no_neutron),
+        cmocka_unit_test(a_disk_within_its_delimiter_is_refused_with_both_lengths),
         cmocka_unit_test(input_beyond_its_limits_is_refused_with_what_was_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
