@@ -33,7 +33,8 @@ static void print_help(void)
         "  -o OUT               a new folder\n"
         "  --beam FILE          a beam file (\"beamroom-beam\"), or a beam of the library: %s\n"
         "                       (default: DIR/beam.json, else goorley)\n"
-        "  --entry X,Y,Z        centre of the aperture, mm, patient LPS (default: the beam file's, else the plan's first beam's)\n"
+        "  --entry X,Y,Z        centre of the aperture, mm, patient LPS (default: the beam file's, else the beam file's\n"
+        "                       distance from the source of the plan's first beam, unless a treatment plan gave that)\n"
         "  --target X,Y,Z       a point the beam's axis goes through\n"
         "  --histories N        neutrons that are followed, 16 to 1e11 (default 1000000); the error falls with their root\n"
         "  --seed N             of the random numbers (default 1); equal input gives equal files\n"
@@ -152,8 +153,8 @@ static bool take_pose(const struct words *words, const struct plan *plan, struct
         file->entry_lps_mm = words->entry_lps_mm;
         file->target_lps_mm = words->target_lps_mm;
     } else if (!file->has_pose && plan->n_beams > 0) {
-        file->entry_lps_mm = plan->beams[0].entry_lps_mm;
-        file->target_lps_mm = plan->beams[0].target_lps_mm;
+        if (!transport_pose_of_beam(plan, 0, file, err))
+            return false;
     } else if (!file->has_pose)
         return error_set(err, ERROR_NOT_FOUND,
                          "neither the beam's file nor the plan says where the beam is; --entry and --target do");
@@ -161,10 +162,30 @@ static bool take_pose(const struct words *words, const struct plan *plan, struct
            error_set(err, ERROR_RANGE, "entry and target are the same point");
 }
 
-static const struct grid *sera_grid(const struct words *words, const struct plan *plan)
+/* The cells of the plan's first dose if they are wanted. What the dose refers to does not matter, but for its patient,
+ * frame and place. */
+static bool take_cells(const struct words *words, const struct plan *plan, const struct grid **cells, struct error *err)
 {
-    bool has_dose = words->is_sera_cells && plan->n_doses > 0 && plan->doses[0].n_components > 0;
-    return has_dose ? &plan->doses[0].components[0].values->grid : NULL;
+    *cells = NULL;
+    if (!words->is_sera_cells)
+        return true;
+    if (plan->n_doses == 0 || plan->doses[0].n_components == 0)
+        return error_set(err, ERROR_NOT_FOUND, "--sera-cells: the plan has no dose whose cells could be taken");
+    struct fit_part dose = { FIT_DOSE, 0 }, region = fit_part_of_region(plan, (size_t)transport_first_region(plan));
+    struct fit fit = fit_of(plan, dose, region);
+    if (fit.reasons & (1U << FIT_PATIENT | 1U << FIT_FRAME | 1U << FIT_APART))
+        return transport_fits(plan, dose, err);
+    *cells = &plan->doses[0].components[0].values->grid;
+    return true;
+}
+
+static bool write(const struct words *words, const struct plan *plan, struct error *err)
+{
+    struct report lost = { 0 };
+    bool is_written = plan_write(plan, words->out, &lost, err);
+    transport_print_report(&lost);
+    report_finish(&lost);
+    return is_written;
 }
 
 static void print_result(const struct transport_result *result, const char *out)
@@ -195,6 +216,9 @@ static bool simulate(const struct words *words, struct plan *plan, const struct 
 {
     struct phase_space beam;
     struct transport_result result;
+    const struct grid *cells;
+    if (!take_cells(words, plan, &cells, err))
+        return false;
     int n_threads = parallel_cores();
     size_t n_list = words->n_histories < LIST_NEUTRONS ? (size_t)words->n_histories : LIST_NEUTRONS;
     if (!phase_space_of_source(&beam, &file->source, n_list, LIST_PHOTONS, words->seed, n_threads, err))
@@ -209,7 +233,7 @@ static bool simulate(const struct words *words, struct plan *plan, const struct 
                                      .direction_lps = vec3_normalize(along),
                                      .n_histories = words->n_histories,
                                      .seed = words->seed,
-                                     .cells = sera_grid(words, plan),
+                                     .cells = cells,
                                      .cell_mm = 5,
                                      .is_whole_cells = words->is_sera_cells,
                                      .n_threads = n_threads };
@@ -218,7 +242,7 @@ static bool simulate(const struct words *words, struct plan *plan, const struct 
     if (!is_done)
         return false;
     print_result(&result, words->out);
-    is_done = transport_add_dose(plan, &result, file->per, words->seed, err) && plan_write(plan, words->out, NULL, err);
+    is_done = transport_add_dose(plan, &result, file->per, words->seed, err) && write(words, plan, err);
     transport_result_finish(&result);
     return is_done;
 }

@@ -38,7 +38,7 @@ const char *transport_library_names(void)
     return "goorley, mono-1kev";
 }
 
-static void print_notes(const struct report *report)
+void transport_print_report(const struct report *report)
 {
     for (size_t i = 0; i < report->n_lines; i++) {
         fputs("beamroom transport: ", stderr);
@@ -53,7 +53,7 @@ static bool parse(const uint8_t *data, size_t size, const char *name, struct bea
 {
     struct report report = { 0 };
     bool is_read = beam_file_parse(data, size, name, file, &report, err);
-    print_notes(&report);
+    transport_print_report(&report);
     report_finish(&report);
     return is_read;
 }
@@ -100,4 +100,21 @@ bool transport_read_beam(const char *path_or_name, struct beam_file *file, struc
     bool is_read = read_in_folder(&folder, name, file, err);
     folder_close(&folder);
     return is_read;
+}
+
+bool transport_pose_of_beam(const struct plan *plan, size_t index, struct beam_file *file, struct error *err)
+{
+    const struct beam *beam = &plan->beams[index];
+    if (beam->has_delivery)
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "beam '%.60s' is of a treatment plan, and its entry is the source; --entry and --target say "
+                         "where the aperture is",
+                         beam->id);
+    if (!transport_fits(plan, (struct fit_part){ FIT_BEAM, index }, err))
+        return false;
+    struct vec3 along = vec3_normalize(vec3_sub(beam->target_lps_mm, beam->entry_lps_mm));
+    file->entry_lps_mm = vec3_add(beam->entry_lps_mm, vec3_scale(along, 10 * file->source.to_aperture_cm));
+    /* A target between source and aperture would turn the axis round. */
+    file->target_lps_mm = vec3_add(file->entry_lps_mm, vec3_scale(along, 100));
+    return true;
 }

@@ -17,6 +17,42 @@ static const struct beam_file_material *material_in_file(const struct beam_file 
     return NULL;
 }
 
+int transport_first_region(const struct plan *plan)
+{
+    for (size_t r = 0; r < plan->regions.n_regions; r++)
+        if (!fit_is_of_other(plan, fit_part_of_region(plan, r)))
+            return (int)r;
+    return -1;
+}
+
+bool transport_fits(const struct plan *plan, struct fit_part part, struct error *err)
+{
+    int first = transport_first_region(plan);
+    if (first < 0)
+        return true;
+    struct fit_part region = fit_part_of_region(plan, (size_t)first);
+    struct fit fit = fit_of(plan, part, region);
+    if (fit_pair_needs(&fit) == FIT_NEEDS_NOTHING)
+        return true;
+    char why[FIT_WHY_SIZE];
+    fit_sentence(plan, part, region, fit.relation, why);
+    return error_set(err, ERROR_STATE, "%s", why);
+}
+
+/* Every source of regions with the first that is used. */
+static bool check_sources(const struct plan *plan, struct error *err)
+{
+    for (size_t source = 0; source <= plan->n_region_origins; source++) {
+        struct fit_part part = { FIT_REGIONS, source };
+        bool is_used = false;
+        for (size_t r = 0; r < plan->regions.n_regions && !is_used; r++)
+            is_used = fit_part_of_region(plan, r).index == source;
+        if (is_used && !fit_is_of_other(plan, part) && !transport_fits(plan, part, err))
+            return false;
+    }
+    return true;
+}
+
 static bool check_names(const struct plan *plan, const struct beam_file *file, struct error *err)
 {
     for (size_t i = 0; i < file->n_materials; i++) {
@@ -71,6 +107,13 @@ static void print_region(const struct region *region, const struct material *mat
                is_assumed ? " (assumed: the name tells nothing)" : "", material->g_cm3, material->boron_ppm);
 }
 
+static void print_left_out(const struct region *region, const char *why)
+{
+    fputs("  ", stdout);
+    text_print(stdout, region->name, 20);
+    printf("  left out: %s\n", why);
+}
+
 /* Gives a region's voxels its value: by label where the layer is on the grid, else by the place of each voxel. */
 static void paint(struct transport_scene *scene, const struct region_set *set, const struct region *region,
                   uint8_t value)
@@ -95,11 +138,12 @@ bool transport_scene_init(struct transport_scene *scene, const struct plan *plan
 {
     const struct region_set *set = &plan->regions;
     *scene = (struct transport_scene){ 0 };
-    if (set->n_layers == 0 || set->n_regions == 0)
+    int first = transport_first_region(plan);
+    if (set->n_layers == 0 || first < 0)
         return error_set(err, ERROR_NOT_FOUND, "the plan has no regions, so nothing says what the patient is made of");
-    if (!check_names(plan, file, err))
+    if (!check_names(plan, file, err) || !check_sources(plan, err))
         return false;
-    scene->grid = &set->layers[0]->grid;
+    scene->grid = &set->layers[set->regions[first].layer]->grid;
     if (!(scene->voxels = mem_array(grid_n_voxels(scene->grid), 1, VOLUME_MAX_BYTES, err)))
         return false;
     puts("materials:");
@@ -109,6 +153,10 @@ bool transport_scene_init(struct transport_scene *scene, const struct plan *plan
             if (region_depth(set, r) != depth)
                 continue;
             n_left--;
+            if (fit_is_of_other(plan, fit_part_of_region(plan, r))) {
+                print_left_out(&set->regions[r], "of another patient");
+                continue;
+            }
             bool is_air = false, is_assumed = false;
             struct material material = { 0 };
             if (!material_of(file, &set->regions[r], &material, &is_air, &is_assumed, err))
@@ -196,8 +244,10 @@ bool transport_add_dose(struct plan *plan, struct transport_result *result, cons
     result->mask = NULL;
     /* It is of the person and the frame that the regions are of. */
     struct part_origin origin = { .patient = -1, .treatment_plan = -1 };
-    if (plan->n_region_origins > 0)
-        origin = plan->region_origins[0];
+    int first = transport_first_region(plan);
+    size_t source = first >= 0 ? fit_part_of_region(plan, (size_t)first).index : 0;
+    if (source > 0)
+        origin = plan->region_origins[source - 1];
     origin.path[0] = origin.set_label[0] = '\0';
     plan->dose_origins[plan->n_doses] = origin;
     plan->n_doses++;

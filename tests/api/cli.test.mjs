@@ -1,12 +1,13 @@
 // The program `beamroom`: its output, its refusals, its exit codes.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { inflateSync } from 'node:zlib';
-import { web } from './daemon.mjs';
+import { realData, web } from './daemon.mjs';
+import { putImages, putPlan, putStructs } from './made_dicom.mjs';
 import { parseStrict } from './strict_json.mjs';
 
 const bin = join(process.env.BEAMROOM_BIN ?? 'build/release', 'beamroom');
@@ -187,6 +188,54 @@ describe('beamroom transport', () => {
       assert.match(refused.stderr, sentence);
     }
     assert.ok(!existsSync(out));
+  });
+
+  // SERA's sample head: its tracks begin in the source's disk, 50 mm before the aperture plane of its beam.json.
+  it('puts the aperture as far before the source of a beam of the plan as the beam file says', { skip: !realData }, () => {
+    const head = join(realData, 'sera-head');
+    const here = mkdtempSync(join(folder, 'pose-'));
+    const { entry_mm, target_mm, ...file } = JSON.parse(readFileSync(join(head, 'beam.json'), 'utf8'));
+    copyFileSync(join(head, file.source), join(here, 'x.source'));
+    writeFileSync(join(here, 'beam.json'), JSON.stringify({ ...file, source: 'x.source' }));
+    const made = beamroom('transport', head, '-o', join(here, 'out'), '--beam', join(here, 'beam.json'), '--histories', '16');
+    assert.equal(made.status, 0, made.stderr);
+    const [aperture, axis] = made.stdout.match(/aperture at (.*), to (.*) mm$/m).slice(1, 3).map((text) => text.split(', ').map(Number));
+    assert.ok(Math.hypot(...aperture.map((value, i) => value - entry_mm[i])) < 1, `${aperture}`);
+    const [way, expected] = [[aperture, axis], [entry_mm, target_mm]].map(([from, to]) => to.map((value, i) => value - from[i]));
+    const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+    assert.ok(dot(way, expected) / Math.hypot(...way) / Math.hypot(...expected) > 0.9999);
+  });
+
+  it('uses no part of another patient or frame, and takes no aperture from a treatment plan', () => {
+    const anna = { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' };
+    const berta = { id: 'B-2002', name: 'Beta^Berta', birthDate: '19701231' };
+    const other = { uid: '1.2.65', file: 'structs-z.dcm', name: 'Zother' };
+    const simulate = (name, put, ...more) => {
+      const dir = join(folder, `gate-${name}`);
+      mkdirSync(dir);
+      putImages(dir, anna);
+      putStructs(dir, anna);
+      put(dir);
+      return beamroom('transport', dir, '-o', `${dir}-out`, '--histories', '2000', ...more);
+    };
+    const pose = ['--entry', '20,8,-60', '--target', '20,8,6'];
+    const alone = simulate('alone', () => {}, ...pose);
+    assert.equal(alone.status, 0, alone.stderr);
+    const patient = simulate('patient', (dir) => putStructs(dir, berta, other), ...pose);
+    assert.equal(patient.status, 0, patient.stderr);
+    assert.match(patient.stdout, /^ {2}Zother +left out: of another patient$/m);
+    assert.match(patient.stderr, /another patient/);
+    for (const file of ['boron', 'gamma', 'valid']) {
+      const [one, two] = ['alone', 'patient'].map((name) => readFileSync(join(folder, `gate-${name}-out`, 'doses', `simulated-here_${file}.nii.gz`)));
+      assert.ok(one.equals(two), `${file} is that of the folder without the other patient`);
+    }
+    const frame = simulate('frame', (dir) => putStructs(dir, { ...anna, frame: '1.2.49', study: '1.2.39' }, other), ...pose);
+    assert.equal(frame.status, 1);
+    assert.match(frame.stderr, /frame of reference/);
+    const treatment = simulate('treatment', (dir) => putPlan(dir, anna, { approval: 'APPROVED' }));
+    assert.equal(treatment.status, 1);
+    assert.match(treatment.stderr, /is of a treatment plan, and its entry is the source; --entry and --target say where the aperture is/);
+    for (const name of ['frame', 'treatment']) assert.ok(!existsSync(join(folder, `gate-${name}-out`)));
   });
 });
 
