@@ -71,40 +71,48 @@ static bool own_material(const struct beam_file_material *from, struct material 
 {
     *material = (struct material){ .word = "own", .g_cm3 = from->g_cm3 };
     for (size_t i = 0; i < from->n_elements; i++)
-        if (!material_set_element(material, from->elements[i].symbol, from->elements[i].fraction, err)) {
-            error_prefix(err, "materials: %.60s", from->region);
+        if (!material_set_element(material, from->elements[i].symbol, from->elements[i].fraction, err))
             return false;
-        }
     return true;
 }
 
-/* False with err set, or with is_air and no material. */
-static bool material_of(const struct beam_file *file, const struct region *region, struct material *material,
-                        bool *is_air, bool *is_assumed, struct error *err)
+struct choice {
+    struct material material;
+    bool is_air, is_helper; /* then without a material */
+    const char *how;        /* for people */
+};
+
+static bool choose(const struct beam_file *file, const struct region *region, struct choice *choice, struct error *err)
 {
     const struct beam_file_material *from = material_in_file(file, region);
     const char *word = from ? from->word : material_word_of_region(region->name);
-    *is_assumed = !word;
+    *choice = (struct choice){ .how = from ? "" : word ? " (by its name)" : " (assumed: the name tells nothing)" };
     if (!word)
         word = "soft-tissue";
-    *is_air = strcmp(word, "air") == 0;
-    if (*is_air)
+    choice->is_air = strcmp(word, "air") == 0;
+    choice->is_helper = !from && !word[0];
+    if (choice->is_air || choice->is_helper)
         return true;
-    if (from && !word[0] ? !own_material(from, material, err) : !material_of_word(word, material, err))
-        return false;
+    struct material *material = &choice->material;
+    bool is_chosen = from && !word[0] ? own_material(from, material, err) : material_of_word(word, material, err);
     material->boron_ppm = from ? from->boron_ppm : 0;
-    return material_check(material, err);
+    if (is_chosen && material_check(material, err))
+        return true;
+    error_prefix(err, "materials: %.60s", region->name);
+    return false;
 }
 
-static void print_region(const struct region *region, const struct material *material, bool is_air, bool is_assumed)
+static void print_choice(const struct region *region, const struct choice *choice)
 {
     fputs("  ", stdout);
     text_print(stdout, region->name, 20);
-    if (is_air)
-        puts("  air");
+    if (choice->is_helper)
+        puts("  no material of its own: its name is of what shapes a dose");
+    else if (choice->is_air)
+        printf("  air%s\n", choice->how);
     else
-        printf("  %s%s, %g g/cm3, %g ppm of boron-10\n", material->word,
-               is_assumed ? " (assumed: the name tells nothing)" : "", material->g_cm3, material->boron_ppm);
+        printf("  %s%s, %g g/cm3, %g ppm of boron-10\n", choice->material.word, choice->how, choice->material.g_cm3,
+               choice->material.boron_ppm);
 }
 
 static void print_left_out(const struct region *region, const char *why)
@@ -114,9 +122,11 @@ static void print_left_out(const struct region *region, const char *why)
     printf("  left out: %s\n", why);
 }
 
-/* Gives a region's voxels its value: by label where the layer is on the grid, else by the place of each voxel. */
+/* Gives a region's voxels its value: by label where the layer is on the grid, else by the place of each voxel.
+ *
+ *   is_bare_only  those without a material */
 static void paint(struct transport_scene *scene, const struct region_set *set, const struct region *region,
-                  uint8_t value)
+                  uint8_t value, bool is_bare_only)
 {
     const struct volume *layer = set->layers[region->layer];
     bool is_same = grid_is_same(&layer->grid, scene->grid);
@@ -128,9 +138,49 @@ static void paint(struct transport_scene *scene, const struct region_set *set, c
                 if (!is_same &&
                     !volume_voxel_at(layer, affine_point(&scene->grid->lps_mm_from_ijk, vec3(i, j, k)), ijk))
                     continue;
-                if (volume_label(layer, ijk[0], ijk[1], ijk[2]) == region->label)
+                if (volume_label(layer, ijk[0], ijk[1], ijk[2]) == region->label && !(is_bare_only && *at != 0))
                     *at = value;
             }
+}
+
+/* Value of a material, 0 of air; equal ones share it. -1: no room */
+static int value_of(struct transport_scene *scene, const struct choice *choice, struct error *err)
+{
+    if (choice->is_air)
+        return 0;
+    for (size_t i = 0; i < scene->n_materials; i++)
+        if (memcmp(&scene->materials[i], &choice->material, sizeof choice->material) == 0)
+            return (int)(i + 1);
+    if (scene->n_materials == MATERIAL_MAX) {
+        error_set(err, ERROR_LIMIT, "more than %d materials", MATERIAL_MAX);
+        return -1;
+    }
+    scene->materials[scene->n_materials++] = choice->material;
+    return (int)scene->n_materials;
+}
+
+/* A structure that shapes a dose changes nothing, but where its label displaced that of the region around it.
+ *
+ *   values  of the regions before it */
+static bool paint_region(struct transport_scene *scene, const struct plan *plan, const struct beam_file *file, size_t r,
+                         uint8_t values[REGION_MAX], struct error *err)
+{
+    const struct region *region = &plan->regions.regions[r];
+    struct choice choice;
+    if (fit_is_of_other(plan, fit_part_of_region(plan, r))) {
+        print_left_out(region, "of another patient");
+        return true;
+    }
+    if (!choose(file, region, &choice, err))
+        return false;
+    int around = region->parent >= 0 ? values[region->parent] : 0,
+        value = choice.is_helper ? around : value_of(scene, &choice, err);
+    if (value < 0)
+        return false;
+    values[r] = (uint8_t)value;
+    paint(scene, &plan->regions, region, values[r], choice.is_helper);
+    print_choice(region, &choice);
+    return true;
 }
 
 bool transport_scene_init(struct transport_scene *scene, const struct plan *plan, const struct beam_file *file,
@@ -147,33 +197,19 @@ bool transport_scene_init(struct transport_scene *scene, const struct plan *plan
     if (!(scene->voxels = mem_array(grid_n_voxels(scene->grid), 1, VOLUME_MAX_BYTES, err)))
         return false;
     puts("materials:");
+    uint8_t values[REGION_MAX] = { 0 };
     size_t n_left = set->n_regions;
     for (int depth = 0; n_left > 0; depth++)
         for (size_t r = 0; r < set->n_regions; r++) {
             if (region_depth(set, r) != depth)
                 continue;
             n_left--;
-            if (fit_is_of_other(plan, fit_part_of_region(plan, r))) {
-                print_left_out(&set->regions[r], "of another patient");
-                continue;
+            if (!paint_region(scene, plan, file, r, values, err)) {
+                transport_scene_finish(scene);
+                return false;
             }
-            bool is_air = false, is_assumed = false;
-            struct material material = { 0 };
-            if (!material_of(file, &set->regions[r], &material, &is_air, &is_assumed, err))
-                goto fail;
-            if (!is_air && scene->n_materials == MATERIAL_MAX) {
-                error_set(err, ERROR_LIMIT, "more than %d regions with a material", MATERIAL_MAX);
-                goto fail;
-            }
-            if (!is_air)
-                scene->materials[scene->n_materials++] = material;
-            paint(scene, set, &set->regions[r], is_air ? 0 : (uint8_t)scene->n_materials);
-            print_region(&set->regions[r], &material, is_air, is_assumed);
         }
     return true;
-fail:
-    transport_scene_finish(scene);
-    return false;
 }
 
 void transport_scene_finish(struct transport_scene *scene)

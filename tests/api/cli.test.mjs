@@ -5,7 +5,7 @@ import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync,
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { inflateSync } from 'node:zlib';
+import { gunzipSync, gzipSync, inflateSync } from 'node:zlib';
 import { realData, web } from './daemon.mjs';
 import { putImages, putPlan, putStructs } from './made_dicom.mjs';
 import { parseStrict } from './strict_json.mjs';
@@ -190,6 +190,37 @@ describe('beamroom transport', () => {
     assert.ok(!existsSync(out));
   });
 
+  it('gives each region the material of its name, none to what shapes a dose, and knows equal materials', () => {
+    const text = (name) => readFileSync(join(plan, name), 'utf8');
+    const volume = gunzipSync(readFileSync(join(plan, 'labels.nii.gz')));
+    const { labels } = JSON.parse(text('labels.json'));
+    for (let node = 0, at = volume.indexOf(3, 352); node < 40; node++, at = volume.indexOf(3, at)) {
+      labels.push({ value: 10 + node, name: `node ${node}` });
+      volume[at] = 10 + node;
+    }
+    const simulate = (target) => {
+      const [dir, out] = [join(folder, `with ${target}`), join(folder, `with ${target} out`)];
+      const named = (json) => json.replaceAll('"target"', `"${target}"`);
+      mkdirSync(dir);
+      const { format, version, hierarchy, beams, regions } = JSON.parse(named(text('plan.json')));
+      writeFileSync(join(dir, 'plan.json'), JSON.stringify({ format, version, hierarchy, beams, regions }));
+      writeFileSync(join(dir, 'labels.json'), named(JSON.stringify({ labels })));
+      writeFileSync(join(dir, 'labels.nii.gz'), gzipSync(volume, { level: 1 }));
+      const { status, stdout, stderr } = beamroom('transport', dir, '-o', out, '--histories', '2000');
+      assert.equal(status, 0, stderr);
+      return { stdout, out };
+    };
+    const target = simulate('target');
+    assert.match(target.stdout, /^ {2}cranium +cranium \(by its name\), 1\.61 g\/cm3/m);
+    assert.match(target.stdout, /^ {2}node 39 +soft-tissue \(assumed: the name tells nothing\)/m);
+    const ring = simulate('Ring');
+    assert.match(ring.stdout, /^ {2}Ring +no material of its own/m);
+    for (const file of ['boron', 'valid']) {
+      const [one, two] = [target, ring].map(({ out }) => readFileSync(join(out, 'doses', `simulated-here_${file}.nii.gz`)));
+      assert.ok(one.equals(two), `${file}: a ring's voxels have the material around it`);
+    }
+  });
+
   // SERA's sample head: its tracks begin in the source's disk, 50 mm before the aperture plane of its beam.json.
   it('puts the aperture as far before the source of a beam of the plan as the beam file says', { skip: !realData }, () => {
     const head = join(realData, 'sera-head');
@@ -199,9 +230,15 @@ describe('beamroom transport', () => {
     writeFileSync(join(here, 'beam.json'), JSON.stringify({ ...file, source: 'x.source' }));
     const made = beamroom('transport', head, '-o', join(here, 'out'), '--beam', join(here, 'beam.json'), '--histories', '16');
     assert.equal(made.status, 0, made.stderr);
-    const [aperture, axis] = made.stdout.match(/aperture at (.*), to (.*) mm$/m).slice(1, 3).map((text) => text.split(', ').map(Number));
+    const [aperture, axis] = made.stdout
+      .match(/aperture at (.*), to (.*) mm$/m)
+      .slice(1, 3)
+      .map((text) => text.split(', ').map(Number));
     assert.ok(Math.hypot(...aperture.map((value, i) => value - entry_mm[i])) < 1, `${aperture}`);
-    const [way, expected] = [[aperture, axis], [entry_mm, target_mm]].map(([from, to]) => to.map((value, i) => value - from[i]));
+    const [way, expected] = [
+      [aperture, axis],
+      [entry_mm, target_mm],
+    ].map(([from, to]) => to.map((value, i) => value - from[i]));
     const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
     assert.ok(dot(way, expected) / Math.hypot(...way) / Math.hypot(...expected) > 0.9999);
   });
@@ -226,7 +263,9 @@ describe('beamroom transport', () => {
     assert.match(patient.stdout, /^ {2}Zother +left out: of another patient$/m);
     assert.match(patient.stderr, /another patient/);
     for (const file of ['boron', 'gamma', 'valid']) {
-      const [one, two] = ['alone', 'patient'].map((name) => readFileSync(join(folder, `gate-${name}-out`, 'doses', `simulated-here_${file}.nii.gz`)));
+      const [one, two] = ['alone', 'patient'].map((name) =>
+        readFileSync(join(folder, `gate-${name}-out`, 'doses', `simulated-here_${file}.nii.gz`)),
+      );
       assert.ok(one.equals(two), `${file} is that of the folder without the other patient`);
     }
     const frame = simulate('frame', (dir) => putStructs(dir, { ...anna, frame: '1.2.49', study: '1.2.39' }, other), ...pose);

@@ -114,8 +114,52 @@ static void a_region_is_given_the_material_its_name_says(void **state)
     assert_string_equal(material_word_of_region("GTV_70"), "brain");
     assert_string_equal(material_word_of_region("left maxillary sinus"), "air");
     assert_string_equal(material_word_of_region("Mandible"), "cranium");
+    assert_string_equal(material_word_of_region("OpticNerve_L"), "brain");
+    assert_string_equal(material_word_of_region("cranial nerve"), "brain");
+    assert_string_equal(material_word_of_region("Air"), "air");
+    assert_string_equal(material_word_of_region("airways"), "air");
+    assert_string_equal(material_word_of_region("outside"), "air");
+    assert_string_equal(material_word_of_region("Sinuses, sphenoidal"), "air");
+    assert_string_equal(material_word_of_region("Head"), "soft-tissue");
+    assert_string_equal(material_word_of_region("Fat"), "adipose");
     assert_null(material_word_of_region("thyroid"));
     assert_null(material_word_of_region(""));
+}
+
+/* Letters within a word say nothing, nor does what a name takes away. */
+static void a_name_is_not_taken_for_what_it_does_not_say(void **state)
+{
+    (void)state;
+    static const char *const tell_nothing[] = { "Hair",           "cavernous sinus", "sinus", "FemoralHead",
+                                                "Femoral Head L", "vertebral body",  "avid",  "vena cava, left atrium",
+                                                "Father",         "Devoid" };
+    for (size_t i = 0; i < sizeof tell_nothing / sizeof *tell_nothing; i++)
+        if (material_word_of_region(tell_nothing[i]))
+            fail_msg("'%s' is taken for %s", tell_nothing[i], material_word_of_region(tell_nothing[i]));
+    static const char *const helpers[] = { "PTV_avoid", "Avoidance",     "PTVavoid", "outside PTV",
+                                           "Ring_PTV",  "PTV shell 2cm", "not PTV",  "without brain" };
+    for (size_t i = 0; i < sizeof helpers / sizeof *helpers; i++)
+        assert_string_equal(material_word_of_region(helpers[i]), "");
+    assert_string_equal(material_word_of_region("Lungs-PTV"), "lung");
+    assert_string_equal(material_word_of_region("Brain minus PTV"), "brain");
+    assert_string_equal(material_word_of_region("Lung not GTV"), "lung");
+    char longest[512];
+    for (size_t i = 0; i < sizeof longest; i++)
+        longest[i] = "a "[i % 2];
+    longest[sizeof longest - 1] = '\0';
+    assert_null(material_word_of_region(longest));
+}
+
+static void a_lung_is_full_of_air_unless_it_is_said_to_be_empty(void **state)
+{
+    (void)state;
+    struct material full, empty;
+    struct error err = { 0 };
+    assert_true(material_of_word(material_word_of_region("Lung_L"), &full, &err));
+    assert_true(material_of_word("lung-deflated", &empty, &err));
+    assert_near(full.g_cm3, .26, 1e-9); /* ICRU 46 */
+    assert_near(empty.g_cm3, 1.05, 1e-9);
+    assert_memory_equal(full.weight, empty.weight, sizeof full.weight);
 }
 
 static void a_material_beyond_its_limits_is_refused_by_name(void **state)
@@ -153,6 +197,8 @@ int main(void)
         cmocka_unit_test(brain_absorbs_what_its_elements_absorb),
         cmocka_unit_test(fast_kerma_is_hydrogens_part_of_that_of_brain),
         cmocka_unit_test(a_region_is_given_the_material_its_name_says),
+        cmocka_unit_test(a_name_is_not_taken_for_what_it_does_not_say),
+        cmocka_unit_test(a_lung_is_full_of_air_unless_it_is_said_to_be_empty),
         cmocka_unit_test(a_material_beyond_its_limits_is_refused_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
