@@ -35,8 +35,8 @@ NODISCARD bool material_of_word(const char *word, struct material *material, str
 /* Sets an element's weight fraction by its symbol, "Na". ERROR_NOT_FOUND: none of those that are followed. */
 NODISCARD bool material_set_element(struct material *material, const char *symbol, double fraction, struct error *err);
 /* The word of the material that a region's name suggests: "Scalp" gives "skin", "left maxillary sinus" "air". "": a
- * structure that only shapes a dose, "PTV_avoid", without a material of its own. NULL if the name tells nothing, for the
- * caller to choose one and to say so. */
+ * structure that only shapes a dose, "PTV_avoid", without a material of its own. NULL if the name tells nothing, for
+ * the caller to choose one and to say so. */
 const char *material_word_of_region(const char *region_name);
 /* ERROR_RANGE: density above 0 to MATERIAL_MAX_G_CM3, each fraction 0 to 1, their sum 0 to 1.02 and not 0 without
  * boron, boron 0 to MATERIAL_MAX_PPM; all finite. */

@@ -1,13 +1,12 @@
 // The program `beamroom`: its output, its refusals, its exit codes.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { gunzipSync, gzipSync, inflateSync } from 'node:zlib';
-import { realData, web } from './daemon.mjs';
-import { putImages, putPlan, putStructs } from './made_dicom.mjs';
+import { inflateSync } from 'node:zlib';
+import { web } from './daemon.mjs';
 import { parseStrict } from './strict_json.mjs';
 
 const bin = join(process.env.BEAMROOM_BIN ?? 'build/release', 'beamroom');
@@ -112,169 +111,6 @@ describe('beamroom', () => {
     const again = beamroom('phantom', plan);
     assert.equal(again.status, 1);
     assert.match(again.stderr, /is there already.*--force/);
-  });
-});
-
-describe('beamroom transport', () => {
-  it('adds a dose with errors to the plan, the same for a seed, and says what it assumed', () => {
-    const beam = join(folder, 'beam.json');
-    writeFileSync(
-      beam,
-      JSON.stringify({
-        format: 'beamroom-beam',
-        version: 1,
-        name: 'made',
-        per: 'minute',
-        spectrum: { radius_mm: 50, neutrons: { energy_ev: [1e4, 0.5], share: [1], per_cm2: 1e10 } },
-        materials: { brain: { icru46: 'brain', ppm: 15 }, cranium: { g_cm3: 1.6, weights: { H: 0.05, C: 0.2, O: 0.45, Ca: 0.3 } } },
-      }),
-    );
-    const outs = ['one', 'two'].map((name) => join(folder, `simulated ${name}`));
-    for (const out of outs) {
-      const { status, stdout, stderr } = beamroom('transport', plan, '-o', out, '--beam', beam, '--histories', '4000');
-      assert.equal(status, 0, stderr);
-      assert.match(stdout, /^ {2}brain .* brain, 1\.04 g\/cm3, 15 ppm of boron-10$/m);
-      assert.match(stdout, /^ {2}cranium .* own, 1\.6 g\/cm3, 0 ppm of boron-10$/m);
-      assert.match(stdout, /^approximate, not for treatment$/m);
-    }
-    const [before, after] = [plan, outs[0]].map((dir) => JSON.parse(beamroom('info', dir, '--json').stdout));
-    assert.equal(after.doses.length, before.doses.length + 1);
-    assert.deepEqual(
-      after.regions.map((region) => region.id),
-      before.regions.map((region) => region.id),
-    );
-    const dose = after.doses.at(-1);
-    assert.equal(dose.name, 'Simulated here, approximate');
-    assert.equal(dose.per, 'minute');
-    assert.deepEqual(dose.components.map((component) => component.quantity).sort(), [
-      ...['boron', 'epithermal-fluence', 'fast', 'fast-fluence', 'gamma', 'nitrogen', 'thermal-fluence'],
-    ]);
-    for (const file of ['boron', 'boron-error', 'gamma', 'valid']) {
-      const [one, two] = outs.map((out) => readFileSync(join(out, 'doses', `${dose.id}_${file}.nii.gz`)));
-      assert.ok(one.equals(two), `${file} is the same for a seed`);
-    }
-    const again = beamroom('transport', plan, '-o', outs[0], '--beam', beam);
-    assert.equal(again.status, 1);
-    assert.match(again.stderr, /is there already and is not empty/);
-  });
-
-  it('refuses a beam or a region that is not there by its name', () => {
-    const out = join(folder, 'not simulated');
-    const none = beamroom('transport', plan, '-o', out, '--beam', join(folder, 'none.json'));
-    assert.equal(none.status, 1);
-    assert.match(none.stderr, /none\.json: no such file, and no beam of the library \(goorley, mono-1kev\)/);
-    const beam = join(folder, 'other.json');
-    const made = { format: 'beamroom-beam', version: 1, source: 'x.source' };
-    for (const [change, sentence] of [
-      [{ source: '../x.source' }, /source/],
-      [{ source: 'x.source' }, /x\.source: the beam file names it, and it is not there/],
-      [{ version: 2 }, /version: this program reads version 1/],
-      [{ spectrum: { radius_mm: 5 }, source: undefined }, /spectrum\.neutrons/],
-    ]) {
-      writeFileSync(beam, JSON.stringify({ ...made, ...change }));
-      const refused = beamroom('transport', plan, '-o', out, '--beam', beam);
-      assert.equal(refused.status, 1);
-      assert.match(refused.stderr, sentence);
-    }
-    const spectrum = { radius_mm: 5, neutrons: { energy_ev: [2, 1], share: [1], per_cm2: 1 } };
-    for (const [materials, sentence] of [
-      [{ spleen: { icru46: 'brain' } }, /no region 'spleen'/],
-      [{ brain: { icru46: 'cheese' } }, /'cheese' is no material/],
-      [{ brain: { g_cm3: 1, weights: { Xx: 1 } } }, /'Xx' is no element/],
-    ]) {
-      writeFileSync(beam, JSON.stringify({ ...made, source: undefined, spectrum, materials }));
-      const refused = beamroom('transport', plan, '-o', out, '--beam', beam);
-      assert.equal(refused.status, 1);
-      assert.match(refused.stderr, sentence);
-    }
-    assert.ok(!existsSync(out));
-  });
-
-  it('gives each region the material of its name, none to what shapes a dose, and knows equal materials', () => {
-    const text = (name) => readFileSync(join(plan, name), 'utf8');
-    const volume = gunzipSync(readFileSync(join(plan, 'labels.nii.gz')));
-    const { labels } = JSON.parse(text('labels.json'));
-    for (let node = 0, at = volume.indexOf(3, 352); node < 40; node++, at = volume.indexOf(3, at)) {
-      labels.push({ value: 10 + node, name: `node ${node}` });
-      volume[at] = 10 + node;
-    }
-    const simulate = (target) => {
-      const [dir, out] = [join(folder, `with ${target}`), join(folder, `with ${target} out`)];
-      const named = (json) => json.replaceAll('"target"', `"${target}"`);
-      mkdirSync(dir);
-      const { format, version, hierarchy, beams, regions } = JSON.parse(named(text('plan.json')));
-      writeFileSync(join(dir, 'plan.json'), JSON.stringify({ format, version, hierarchy, beams, regions }));
-      writeFileSync(join(dir, 'labels.json'), named(JSON.stringify({ labels })));
-      writeFileSync(join(dir, 'labels.nii.gz'), gzipSync(volume, { level: 1 }));
-      const { status, stdout, stderr } = beamroom('transport', dir, '-o', out, '--histories', '2000');
-      assert.equal(status, 0, stderr);
-      return { stdout, out };
-    };
-    const target = simulate('target');
-    assert.match(target.stdout, /^ {2}cranium +cranium \(by its name\), 1\.61 g\/cm3/m);
-    assert.match(target.stdout, /^ {2}node 39 +soft-tissue \(assumed: the name tells nothing\)/m);
-    const ring = simulate('Ring');
-    assert.match(ring.stdout, /^ {2}Ring +no material of its own/m);
-    for (const file of ['boron', 'valid']) {
-      const [one, two] = [target, ring].map(({ out }) => readFileSync(join(out, 'doses', `simulated-here_${file}.nii.gz`)));
-      assert.ok(one.equals(two), `${file}: a ring's voxels have the material around it`);
-    }
-  });
-
-  // SERA's sample head: its tracks begin in the source's disk, 50 mm before the aperture plane of its beam.json.
-  it('puts the aperture as far before the source of a beam of the plan as the beam file says', { skip: !realData }, () => {
-    const head = join(realData, 'sera-head');
-    const here = mkdtempSync(join(folder, 'pose-'));
-    const { entry_mm, target_mm, ...file } = JSON.parse(readFileSync(join(head, 'beam.json'), 'utf8'));
-    copyFileSync(join(head, file.source), join(here, 'x.source'));
-    writeFileSync(join(here, 'beam.json'), JSON.stringify({ ...file, source: 'x.source' }));
-    const made = beamroom('transport', head, '-o', join(here, 'out'), '--beam', join(here, 'beam.json'), '--histories', '16');
-    assert.equal(made.status, 0, made.stderr);
-    const [aperture, axis] = made.stdout
-      .match(/aperture at (.*), to (.*) mm$/m)
-      .slice(1, 3)
-      .map((text) => text.split(', ').map(Number));
-    assert.ok(Math.hypot(...aperture.map((value, i) => value - entry_mm[i])) < 1, `${aperture}`);
-    const [way, expected] = [
-      [aperture, axis],
-      [entry_mm, target_mm],
-    ].map(([from, to]) => to.map((value, i) => value - from[i]));
-    const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-    assert.ok(dot(way, expected) / Math.hypot(...way) / Math.hypot(...expected) > 0.9999);
-  });
-
-  it('uses no part of another patient or frame, and takes no aperture from a treatment plan', () => {
-    const anna = { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' };
-    const berta = { id: 'B-2002', name: 'Beta^Berta', birthDate: '19701231' };
-    const other = { uid: '1.2.65', file: 'structs-z.dcm', name: 'Zother' };
-    const simulate = (name, put, ...more) => {
-      const dir = join(folder, `gate-${name}`);
-      mkdirSync(dir);
-      putImages(dir, anna);
-      putStructs(dir, anna);
-      put(dir);
-      return beamroom('transport', dir, '-o', `${dir}-out`, '--histories', '2000', ...more);
-    };
-    const pose = ['--entry', '20,8,-60', '--target', '20,8,6'];
-    const alone = simulate('alone', () => {}, ...pose);
-    assert.equal(alone.status, 0, alone.stderr);
-    const patient = simulate('patient', (dir) => putStructs(dir, berta, other), ...pose);
-    assert.equal(patient.status, 0, patient.stderr);
-    assert.match(patient.stdout, /^ {2}Zother +left out: of another patient$/m);
-    assert.match(patient.stderr, /another patient/);
-    for (const file of ['boron', 'gamma', 'valid']) {
-      const [one, two] = ['alone', 'patient'].map((name) =>
-        readFileSync(join(folder, `gate-${name}-out`, 'doses', `simulated-here_${file}.nii.gz`)),
-      );
-      assert.ok(one.equals(two), `${file} is that of the folder without the other patient`);
-    }
-    const frame = simulate('frame', (dir) => putStructs(dir, { ...anna, frame: '1.2.49', study: '1.2.39' }, other), ...pose);
-    assert.equal(frame.status, 1);
-    assert.match(frame.stderr, /frame of reference/);
-    const treatment = simulate('treatment', (dir) => putPlan(dir, anna, { approval: 'APPROVED' }));
-    assert.equal(treatment.status, 1);
-    assert.match(treatment.stderr, /is of a treatment plan, and its entry is the source; --entry and --target say where the aperture is/);
-    for (const name of ['frame', 'treatment']) assert.ok(!existsSync(join(folder, `gate-${name}-out`)));
   });
 });
 
