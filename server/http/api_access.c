@@ -1,6 +1,7 @@
 /* Finds out the subject of a call's right, asks access_check, and answers who does not have it. */
 #include "server/http/api_access.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,6 +12,7 @@
 #include "server/http/api_meetings.h"
 #include "server/http/api_queries.h"
 #include "server/http/api_rates.h"
+#include "server/wire/json.h"
 
 static bool needs_sign_in(struct problem *problem)
 {
@@ -80,6 +82,42 @@ bool api_access_to_found_plan(const struct api *api, const struct call *call, en
 
 static bool seat_allows(const struct api *api, const struct call *call, enum access_right right, const char *plan_id);
 
+/* True for the place where the three slices of a room meet. A wall has its numbers from the scene, so it sends the same
+ * ones. */
+static bool is_crosshair(const struct call *call, const struct room *room)
+{
+    static const char *const parameters[3] = { "x", "y", "z" };
+    static const char *const axes[3] = { "sagittal", "coronal", "axial" };
+    static const double tolerance_mm = 1e-6;
+    uint32_t revision;
+    const cJSON *image = cJSON_GetObjectItemCaseSensitive(room_scene(room, &revision), "image"),
+                *slices = cJSON_GetObjectItemCaseSensitive(image, "slices");
+    for (int i = 0; i < 3; i++) {
+        struct problem problem;
+        double asked = 0;
+        const double position_mm = json_number(cJSON_GetObjectItemCaseSensitive(slices, axes[i]), "position_mm", NAN);
+        if (!call_query_number(call, parameters[i], true, &asked, &problem) ||
+            !(fabs(asked - position_mm) <= tolerance_mm))
+            return false;
+    }
+    return true;
+}
+
+/* A wall shows the values at the crosshair of its room, so it may ask for them, and for no other place. */
+static bool wall_may_probe(const struct api *api, struct call *call, const struct access_route *need)
+{
+    const bool is_probe = need->right == ACCESS_MEASURE && (strcmp(need->path, "/api/v1/plans/{plan}/probe") == 0 ||
+                                                            strcmp(need->path, "/api/v1/plans/{plan}/dose/probe") == 0);
+    const char *room_id = call_query(call, "room");
+    const struct room *room = is_probe && room_id && call->member ? net_room_find(api->net, room_id) : NULL;
+    if (!room || strcmp(room_plan_id(room), call->ids[0]) != 0)
+        return false;
+    const struct room_caller caller = room_caller_of(room, &call->identity, call->member);
+    call->is_of_wall =
+        caller.is_here && caller.is_member && caller.role == WIRE_MEMBER_ROLE_WALL && is_crosshair(call, room);
+    return call->is_of_wall;
+}
+
 static bool check_plan(struct api *api, struct call *call, const struct access_route *need, api_again *again)
 {
     const char *id = call->ids[0];
@@ -87,6 +125,8 @@ static bool check_plan(struct api *api, struct call *call, const struct access_r
     struct problem problem;
     const bool is_there = fleet_plan_find(net_fleet(api->net), id, &found);
     if (is_there && (api_access_to_plan(api, call, need->right, id) || seat_allows(api, call, need->right, id)))
+        return true;
+    if (is_there && wall_may_probe(api, call, need))
         return true;
     if (!is_there && need->right == ACCESS_SERVE && api_access_to_plan(api, call, need->right, id))
         return true; /* erasing reaches what is kept of a plan that is gone */

@@ -219,6 +219,8 @@ void api_question(struct api *api, struct call *call)
         packet_finish(&packet);
         return;
     }
+    if (call->is_of_wall) /* the scene as it is shown to all */
+        cJSON_DeleteItemFromObjectCaseSensitive(view, "override");
     struct question_call *question = mem_new(sizeof *question);
     *question = (struct question_call){ .packet = packet, .view = view };
     (void)snprintf(question->plan_id, sizeof question->plan_id, "%s", call->ids[0]);

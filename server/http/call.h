@@ -58,6 +58,7 @@ struct call {
 
     bool is_counted;                      /* in the rates of its caller */
     bool has_listed;                      /* the plan folders were listed for it */
+    bool is_of_wall;                      /* allowed at the crosshair of its caller's wall alone */
     void *api;                            /* the struct api that handles the call */
     void *context;                        /* for the handler, while it waits for the fleet */
     void (*answering)(struct call *call); /* NULL, or called with the answer before finished, on the net thread */

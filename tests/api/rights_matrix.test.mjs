@@ -343,6 +343,65 @@ describe('The matrix of rights', { concurrency: false }, () => {
     assert.equal((await ask('presenter', at(rooms.own.presenter))).status, 200);
   });
 
+  test('a wall is told the values at the crosshair of its room, and at no other place', async () => {
+    const scene = await until(
+      () => ask('wall', `/api/v1/rooms/${rooms.own.wall}/scene`), // there once the plan is loaded
+      ({ status }) => status === 200,
+    );
+    const { slices } = scene.json.image;
+    const [x, y, z] = ['sagittal', 'coronal', 'axial'].map((axis) => slices[axis].position_mm);
+    const at = (question, parameters, plan = plans.granted) =>
+      `/api/v1/plans/${plan}/${question}?${new URLSearchParams({ room: rooms.own.wall, x, y, z, ...parameters })}`;
+    const said = async (kind, path) => saidBy(await ask(kind, path));
+    for (const question of ['probe', 'dose/probe']) {
+      assert.equal(await said('wall', at(question, {})), 'allowed', question);
+      for (const other of [
+        { x: x + 0.01 },
+        { y: y - 1 },
+        { z: z + 1e-3 },
+        { z: 'x' },
+        { room: rooms.granted },
+        { room: rooms.own.guest },
+        { room: '' },
+      ])
+        assert.equal(await said('wall', at(question, other)), 'signed-out', `${question} ${JSON.stringify(other)}`);
+      assert.equal(await said('wall', at(question, {}, plans.foreign)), 'signed-out', question);
+      assert.equal(await said('observer', at(question, { room: rooms.granted })), 'forbidden', question);
+      assert.equal(await said('nobody', at(question, {})), 'signed-out', question);
+    }
+    for (const question of ['dvh', 'constraints', 'coverage', 'irradiation', 'pick'])
+      assert.equal(await said('wall', at(question, {})), 'signed-out', question);
+    // what the view says of the scene does not count
+    const view = JSON.stringify({ override: { dose: { quantity: 'no such quantity' } } });
+    assert.equal((await ask('planner', at('dose/probe', { view, room: rooms.own.planner }))).status, 422);
+    assert.notEqual((await ask('wall', at('dose/probe', { view }))).status, 422);
+    // nor another place named beside the crosshair, whichever of the two is read
+    for (const twice of [`&x=${x + 5}`, `&room=${rooms.own.guest}`])
+      for (const path of [`${at('probe', {})}${twice}`, at('probe', {}).replace('?', `?${twice.slice(1)}&`)]) {
+        const { json } = await ask('wall', path);
+        assert.ok(!json.point_lps_mm || Math.abs(json.point_lps_mm[0] - x) < 1e-6, path);
+      }
+    for (const question of ['probe', 'dose/probe']) assert.doesNotMatch((await ask('wall', at(question, {}))).text, /smith/i);
+  });
+
+  test('a wall whose link has ended is told nothing more', async () => {
+    const room = rooms.own.wall;
+    const link = await made('planner', `/api/v1/rooms/${room}/links`, { role: 'wall', guests: true });
+    const client = await Client.enter(daemon.url, room, { link: link.token, name: 'Wall' });
+    callers.ended = { headers: client.headers };
+    const { slices } = (await ask('ended', `/api/v1/rooms/${room}/scene`)).json.image;
+    const [x, y, z] = ['sagittal', 'coronal', 'axial'].map((axis) => slices[axis].position_mm);
+    const paths = ['probe', 'dose/probe'].map(
+      (question) => `/api/v1/plans/${plans.granted}/${question}?${new URLSearchParams({ room, x, y, z })}`,
+    );
+    for (const path of paths) assert.equal((await ask('ended', path)).status, 200, path);
+    const ended = await ask('planner', `/api/v1/rooms/${room}/links/${link.id}?members=remove`, 'DELETE');
+    assert.ok(ended.status < 300, ended.text);
+    await client.message('bye');
+    for (const path of paths) assert.equal(saidBy(await ask('ended', path)), 'signed-out', path);
+    client.cut();
+  });
+
   test('a guest takes no surface away as a file, of the plan whose pictures it sees', async () => {
     const [{ id: region }] = (await ask('planner', `/api/v1/plans/${plans.granted}`)).json.regions;
     const at = `/api/v1/plans/${plans.granted}/regions/${region}/surface?format=stl`;

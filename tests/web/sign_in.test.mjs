@@ -178,6 +178,7 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     await wall.locator('.wall-live[data-state="live"]').waitFor();
     await wall.waitForFunction(() => globalThis.wall.room.views.slice(0, 4).every(({ painted }) => painted.value));
     await wall.locator('.wall-column', { hasText: 'At the crosshair' }).waitFor();
+    await wall.locator('.wall-column .wall-value', { hasText: /\d.* Gy/ }).waitFor();
     assert.equal(wall.url(), `${world.daemon.url}/display/${room}`);
     await page.locator('.people-here li', { hasText: 'wall' }).waitFor();
     await page

@@ -178,7 +178,10 @@ function probe(room, api, clock) {
     const scene = room.scene.value;
     return scene && room.plan.value && room.renderer.value.state === 'ready' ? crosshair(scene).join(' ') : '';
   };
-  const ask = (place, aborted) => api.probe(room.planId.peek(), place.split(' ').map(Number), aborted);
+  const ask = (place, aborted) => {
+    const [x, y, z] = place.split(' ');
+    return api.ofScene(room.planId.peek(), 'probe', room.id, {}, { x, y, z }, aborted);
+  };
   return new Answer({ key, ask, clock, restMs: probeMs, renews: true });
 }
 
