@@ -93,9 +93,31 @@ static void add_decision(struct paper *paper)
     }
 }
 
+/* True where the plan and its scene have what a part of the record is made from: without a dose, say, there is no
+ * histogram to miss. */
+static bool was_to_keep(const struct paper *paper, const char *what)
+{
+    static const char *const of_dose[] = { "dose", "dvh", "limits", "irradiation" };
+    const bool has_limits = cJSON_GetArraySize(get(paper->scene, "constraints")) > 0;
+    if (!text_of(paper->plan, "id")[0]) /* the plan was closed: nobody knows */
+        return true;
+    if (strcmp(what, "beam") == 0)
+        return cJSON_GetArraySize(get(paper->plan, "beams")) > 0 ||
+               json_flag(get(get(paper->scene, "beam"), "draft"), "enabled", false);
+    if (strcmp(what, "limits") == 0 && has_limits)
+        return true;
+    for (size_t i = 0; i < sizeof of_dose / sizeof of_dose[0]; i++)
+        if (strcmp(what, of_dose[i]) == 0)
+            return cJSON_GetArraySize(get(paper->plan, "doses")) > 0;
+    return true;
+}
+
 /* Adds what could not be had when it was decided. */
 static void add_missing(struct paper *paper)
 {
+    static const char *const words[][2] = { { "dvh", "dose-volume histogram" },
+                                            { "fits", "which parts fit each other" },
+                                            { "irradiation", "irradiation time" } };
     const cJSON *missing;
     if (!paper->kept) {
         block_text(
@@ -109,10 +131,12 @@ static void add_missing(struct paper *paper)
     }
     cJSON_ArrayForEach(missing, get(paper->kept, "missing"))
     {
-        block_text(paper,
-                   written_format("Not kept with this decision: %.40s. %.300s.", text_of(missing, "what"),
-                                  text_of(missing, "why")),
-                   "warn");
+        const char *what = text_of(missing, "what");
+        if (was_to_keep(paper, what))
+            block_text(paper,
+                       written_format("Not kept with this decision: %.40s (%.300s).",
+                                      word_of(words, sizeof words / sizeof words[0], what), text_of(missing, "why")),
+                       "warn");
     }
 }
 

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { copyFileSync, cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -31,6 +31,17 @@ before(async () => {
     labels.labels[[0, 2, 3][i]].name = name.slice(0, 120);
   writeFileSync(join(folder, 'names', 'labels.json'), JSON.stringify(labels));
   putWhole(join(folder, 'case-1'), quirin, { approval: 'APPROVED', label: 'BNCT-2' });
+  mkdirSync(join(folder, 'bare')); // an image alone
+  writeFileSync(
+    join(folder, 'bare', 'ct.nrrd'),
+    Buffer.concat([
+      Buffer.from(
+        'NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 8 8 8\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n' +
+          'kinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: (0,0,0)\n\n',
+      ),
+      Buffer.alloc(8 * 8 * 8 * 2),
+    ]),
+  );
   await start('Europe/Helsinki');
 });
 async function start(zone) {
@@ -420,6 +431,23 @@ test('a decision without its renderer is kept all the same, and says what is mis
     'sagittal picture',
   ]);
   assert.ok(kept.missing.every(({ why }) => why.length > 5));
+  const { blocks } = (await call(`${api}/records/${item.id}/paper`)).json;
+  const said = blocks.map(({ text }) => text ?? '').filter((text) => text.startsWith('Not kept with this decision: '));
+  assert.equal(said.length, kept.missing.length, 'the plan has all of it, and the paper says each');
+  assert.ok(said.some((text) => text.startsWith('Not kept with this decision: dose-volume histogram (')));
+});
+
+test('paper does not miss the dose, histogram and beam of a plan that has none, but limits that were set', async () => {
+  const { room, client } = await enter('bare');
+  const said = async () => {
+    const item = await put(client, 'decision', { decision: 'defer', text: '' });
+    const { blocks } = (await call(`${api}/records/${item.id}/paper`)).json;
+    assert.ok(blocks.some(({ rows }) => rows?.some((cells) => cells.some(({ text }) => text === 'no dose'))));
+    return blocks.map(({ text }) => text ?? '').filter((text) => /not kept/i.test(text));
+  };
+  assert.deepEqual(await said(), []);
+  await change(room, client, { constraints: { 'limit-1': { ...limits.constraints['limit-1'], region: '' } } });
+  assert.deepEqual(await said(), ['Not kept with this decision: limits (the plan has no dose).']);
 });
 
 test('the check of the audit knows each picture: a changed one and one that was taken away are found', async () => {
