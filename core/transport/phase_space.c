@@ -29,7 +29,7 @@ struct drawing {
 
 /* How much more often than its share a group is drawn. Any positive numbers give the same mean; these make the fast
  * dose, which few neutrons bring, as sure as the others. */
-static double importance(double energy_ev)
+double phase_space_importance(double energy_ev)
 {
     return energy_ev > 9.2e3 ? fmin(40, 4 * sqrt(energy_ev / 1e4)) : energy_ev < 1 ? .5 : 1;
 }
@@ -41,7 +41,7 @@ static void prepare(struct drawing *drawing)
     for (size_t i = 0; i < spectrum->n_groups; i++)
         sum += spectrum->share[i];
     for (size_t i = 0; i < spectrum->n_groups; i++) {
-        double more = drawing->are_photons ? 1 : importance(spectrum->bounds_ev[i]);
+        double more = drawing->are_photons ? 1 : phase_space_importance(spectrum->bounds_ev[i]);
         drawn += spectrum->share[i] / sum * more;
         drawing->cumulative[i] = drawn;
         drawing->weight[i] = 1 / more;

@@ -33,4 +33,6 @@ struct phase_space {
  *   thread                 any; equal for a seed and any number of threads */
 NODISCARD bool phase_space_of_source(struct phase_space *space, const struct beam_source *source, size_t n_neutrons,
                                      size_t n_photons, uint64_t seed, int n_threads, struct error *err);
+/* How much more often than its share a neutron of an energy is drawn. */
+double phase_space_importance(double energy_ev);
 void phase_space_finish(struct phase_space *space);

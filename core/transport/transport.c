@@ -124,7 +124,13 @@ void transport_run_destroy(struct transport_run *run)
     free(run);
 }
 
-/* The beam's axes in the box's frame: any two across it. */
+void transport_beam_axes(struct vec3 direction_lps, struct vec3 axes_lps[2])
+{
+    struct vec3 other = fabs(direction_lps.x) < .6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    axes_lps[0] = vec3_normalize(vec3_cross(direction_lps, other));
+    axes_lps[1] = vec3_cross(direction_lps, axes_lps[0]);
+}
+
 bool transport_run_aim(struct transport_run *run, struct vec3 aperture_lps_mm, struct vec3 direction_lps,
                        struct error *err)
 {
@@ -132,11 +138,10 @@ bool transport_run_aim(struct transport_run *run, struct vec3 aperture_lps_mm, s
         return false;
     struct world *world = &run->world;
     geometry_place(&run->geometry, aperture_lps_mm, world->aperture_cm);
-    struct vec3 along = vec3_normalize(direction_lps);
-    struct vec3 other = fabs(along.x) < .6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    struct vec3 across = vec3_normalize(vec3_cross(along, other));
-    geometry_direct(&run->geometry, across, world->axis[0]);
-    geometry_direct(&run->geometry, vec3_cross(along, across), world->axis[1]);
+    struct vec3 along = vec3_normalize(direction_lps), across[2];
+    transport_beam_axes(along, across);
+    geometry_direct(&run->geometry, across[0], world->axis[0]);
+    geometry_direct(&run->geometry, across[1], world->axis[1]);
     geometry_direct(&run->geometry, along, world->axis[2]);
     for (int lane = 0; lane < LANES && run->n_histories > 0; lane++)
         memset(run->sums[lane], 0, run->n_cells * sizeof *run->sums[lane]);

@@ -68,6 +68,8 @@ struct transport_run;
 NODISCARD struct transport_run *transport_run_create(const struct transport_input *input, struct error *err);
 void transport_run_destroy(struct transport_run *run); /* NULL: nothing */
 
+/* The beam's x and y in the patient, for a direction of length 1: any two across it. */
+void transport_beam_axes(struct vec3 direction_lps, struct vec3 axes_lps[2]);
 /* Another pose, without histories. ERROR_RANGE: as before. */
 NODISCARD bool transport_run_aim(struct transport_run *run, struct vec3 aperture_lps_mm, struct vec3 direction_lps,
                                  struct error *err);

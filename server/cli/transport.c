@@ -22,6 +22,11 @@ struct words {
     bool has_entry, has_target, is_sera_cells;
     struct vec3 entry_lps_mm, target_lps_mm;
     uint64_t n_histories, seed;
+    double neutrons_per_unit; /* of a file of particles; 0: not given */
+};
+struct beam_read {
+    struct beam_file file;
+    struct beam_particles particles; /* none: the file has a source */
 };
 
 static void print_help(void)
@@ -32,7 +37,8 @@ static void print_help(void)
         "as its last into the new folder OUT. Approximate, not for treatment: docs/live-dose.md has its validation and limits.\n\n"
         "  -o OUT               a new folder\n"
         "  --beam FILE          a beam file (\"beamroom-beam\"), or a beam of the library: %s\n"
-        "                       (default: DIR/beam.json, else goorley)\n"
+        "                       (default: DIR/beam.json, else goorley); or particles: .mcpl, .mcpl.gz, .IAEAheader\n"
+        "  --neutrons-per-unit N  real neutrons that a file of particles stands for, for each unit of the source\n"
         "  --entry X,Y,Z        centre of the aperture, mm, patient LPS (default: the beam file's, else the beam file's\n"
         "                       distance from the source of the plan's first beam, unless a treatment plan gave that)\n"
         "  --target X,Y,Z       a point the beam's axis goes through\n"
@@ -73,9 +79,16 @@ static bool parse_count(const char *text, double low, double high, uint64_t *cou
 /* 0, or the exit status after a usage error. */
 static int take_option(struct words *words, int option, const char *word)
 {
+    char *end;
     switch (option) {
     case 'o': words->out = optarg; return 0;
     case 'b': words->beam = optarg; return 0;
+    case 'p':
+        words->neutrons_per_unit = strtod(optarg, &end);
+        return end != optarg && !*end && words->neutrons_per_unit >= 1e-30 && words->neutrons_per_unit <= 1e30
+                   ? 0
+                   : command_usage_error("transport", "--neutrons-per-unit '%s' is not a number from 1e-30 to 1e30",
+                                         optarg);
     case 'c': words->is_sera_cells = true; return 0;
     case 'e':
         words->has_entry = true;
@@ -105,15 +118,13 @@ static int take_option(struct words *words, int option, const char *word)
 
 static int take_words(struct words *words, int argc, char **argv)
 {
-    static const struct option long_options[] = { { "beam", required_argument, NULL, 'b' },
-                                                  { "entry", required_argument, NULL, 'e' },
-                                                  { "target", required_argument, NULL, 't' },
-                                                  { "histories", required_argument, NULL, 'n' },
-                                                  { "seed", required_argument, NULL, 's' },
-                                                  { "mode", required_argument, NULL, 'm' },
-                                                  { "sera-cells", no_argument, NULL, 'c' },
-                                                  { "help", no_argument, NULL, 'h' },
-                                                  { NULL, 0, NULL, 0 } };
+    static const struct option long_options[] = {
+        { "beam", required_argument, NULL, 'b' },   { "entry", required_argument, NULL, 'e' },
+        { "target", required_argument, NULL, 't' }, { "histories", required_argument, NULL, 'n' },
+        { "seed", required_argument, NULL, 's' },   { "neutrons-per-unit", required_argument, NULL, 'p' },
+        { "mode", required_argument, NULL, 'm' },   { "sera-cells", no_argument, NULL, 'c' },
+        { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 }
+    };
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
         if (option == 'h') {
@@ -133,18 +144,36 @@ static int take_words(struct words *words, int argc, char **argv)
 }
 
 /* DIR/beam.json if it is there, else the library's. */
-static bool read_beam(const struct words *words, struct beam_file *file, struct error *err)
+static bool read_beam(const struct words *words, struct beam_read *beam, struct error *err)
 {
     if (words->beam)
-        return transport_read_beam(words->beam, file, err);
+        return transport_read_beam(words->beam, &beam->file, &beam->particles, err);
     char path[4096];
     snprintf(path, sizeof path, "%s/beam.json", words->plan);
-    if (transport_read_beam(path, file, err))
+    if (transport_read_beam(path, &beam->file, &beam->particles, err))
         return true;
     if (err->code != ERROR_NOT_FOUND)
         return false;
     *err = (struct error){ 0 };
-    return transport_read_beam("goorley", file, err);
+    return transport_read_beam("goorley", &beam->file, &beam->particles, err);
+}
+
+static bool take_strength(const struct words *words, struct beam_file *file, struct error *err)
+{
+    struct beam_file_particles *particles = &file->particles;
+    bool is_said = particles->neutrons_per_unit + particles->histories_per_unit > 0;
+    if (words->neutrons_per_unit > 0 && !particles->path[0])
+        return error_set(err, ERROR_STATE, "--neutrons-per-unit is for files of particles, and the beam is none");
+    if (words->neutrons_per_unit > 0) {
+        particles->neutrons_per_unit = words->neutrons_per_unit;
+        particles->histories_per_unit = 0;
+    } else if (particles->path[0] && !is_said)
+        return error_set(
+            err, ERROR_NOT_FOUND,
+            "%.100s does not say how many real neutrons it stands for; --neutrons-per-unit does, or a beam "
+            "file with \"particles\"",
+            particles->path);
+    return true;
 }
 
 static bool take_pose(const struct words *words, const struct plan *plan, struct beam_file *file, struct error *err)
@@ -152,7 +181,11 @@ static bool take_pose(const struct words *words, const struct plan *plan, struct
     if (words->has_entry) {
         file->entry_lps_mm = words->entry_lps_mm;
         file->target_lps_mm = words->target_lps_mm;
-    } else if (!file->has_pose && plan->n_beams > 0) {
+    } else if (!file->has_pose && file->particles.path[0])
+        return error_set(
+            err, ERROR_NOT_FOUND,
+            "a file of particles does not say where its aperture is in the patient; --entry and --target do");
+    else if (!file->has_pose && plan->n_beams > 0) {
         if (!transport_pose_of_beam(plan, 0, file, err))
             return false;
     } else if (!file->has_pose)
@@ -211,17 +244,26 @@ static void print_result(const struct transport_result *result, const char *out)
     puts("approximate, not for treatment");
 }
 
-static bool simulate(const struct words *words, struct plan *plan, const struct beam_file *file,
+static bool make_list(struct phase_space *list, const struct words *words, const struct beam_read *beam, int n_threads,
+                      struct error *err)
+{
+    size_t n = words->n_histories < LIST_NEUTRONS ? (size_t)words->n_histories : LIST_NEUTRONS;
+    if (beam->file.particles.path[0])
+        return transport_list_of_particles(list, &beam->file, &beam->particles, n, LIST_PHOTONS, words->seed, err);
+    return phase_space_of_source(list, &beam->file.source, n, LIST_PHOTONS, words->seed, n_threads, err);
+}
+
+static bool simulate(const struct words *words, struct plan *plan, const struct beam_read *read,
                      const struct transport_scene *scene, struct error *err)
 {
+    const struct beam_file *file = &read->file;
     struct phase_space beam;
     struct transport_result result;
     const struct grid *cells;
     if (!take_cells(words, plan, &cells, err))
         return false;
     int n_threads = parallel_cores();
-    size_t n_list = words->n_histories < LIST_NEUTRONS ? (size_t)words->n_histories : LIST_NEUTRONS;
-    if (!phase_space_of_source(&beam, &file->source, n_list, LIST_PHOTONS, words->seed, n_threads, err))
+    if (!make_list(&beam, words, read, n_threads, err))
         return false;
     struct vec3 along = vec3_sub(file->target_lps_mm, file->entry_lps_mm);
     struct transport_input input = { .grid = scene->grid,
@@ -266,18 +308,24 @@ static bool is_free(const char *out, struct error *err)
     return n_names == 0 || error_set(err, ERROR_STATE, "%.180s is there already and is not empty", out);
 }
 
-static bool run(const struct words *words, struct plan *plan, struct beam_file *file, struct error *err)
+static bool run(const struct words *words, struct plan *plan, struct beam_read *beam, struct error *err)
 {
     struct transport_scene scene;
-    if (!is_free(words->out, err) || !read_beam(words, file, err) || !take_pose(words, plan, file, err))
+    struct beam_file *file = &beam->file;
+    if (!is_free(words->out, err) || !read_beam(words, beam, err) || !take_strength(words, file, err) ||
+        !take_pose(words, plan, file, err))
         return false;
     fputs("beam: ", stdout);
-    text_print(stdout, file->name[0] ? file->name : file->source.name, 0);
+    text_print(stdout,
+               file->name[0]             ? file->name
+               : file->particles.path[0] ? file->particles.path
+                                         : file->source.name,
+               0);
     printf(", aperture at %g, %g, %g, to %g, %g, %g mm\n", file->entry_lps_mm.x, file->entry_lps_mm.y,
            file->entry_lps_mm.z, file->target_lps_mm.x, file->target_lps_mm.y, file->target_lps_mm.z);
     if (!transport_scene_init(&scene, plan, file, err))
         return false;
-    bool is_done = simulate(words, plan, file, &scene, err);
+    bool is_done = simulate(words, plan, beam, &scene, err);
     transport_scene_finish(&scene);
     return is_done;
 }
@@ -288,12 +336,13 @@ int command_transport(int argc, char **argv)
     int status = take_words(&words, argc, argv);
     if (status != 0)
         return status < 0 ? EXIT_DONE : status;
-    static struct beam_file file;
+    static struct beam_read beam;
     struct error err = { 0 };
     struct plan *plan = command_open_plan("transport", words.plan);
     if (!plan)
         return EXIT_REFUSED;
-    bool is_done = run(&words, plan, &file, &err);
+    bool is_done = run(&words, plan, &beam, &err);
     plan_destroy(plan);
+    beam_particles_finish(&beam.particles);
     return is_done ? EXIT_DONE : command_refused("transport", &err);
 }

@@ -1,4 +1,4 @@
-/* Beams of `beamroom transport`: a library of published ones, and files. */
+/* Beams of `beamroom transport`: those of the library, and files. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,35 +8,6 @@
 #include "core/formats/sera/sera_source.h"
 #include "server/cli/text.h"
 #include "server/cli/transport_parts.h"
-
-/* goorley: J. T. Goorley, W. S. Kiger, R. G. Zamenhof, Med. Phys. 29, 145 (2002): 10 % thermal, 89 % epithermal, 1 %
- * fast, flat in lethargy, parallel, 5 cm in radius, 1e10 per cm2 and s. mono-1kev: one energy in the same disk, as in
- * studies of the best energy (published peak of thermal fluence in a head: 3 cm). */
-static const struct {
-    const char *name, *text;
-} library[] = {
-    { "goorley",
-      "{\"format\": \"beamroom-beam\", \"version\": 1, \"name\": \"Goorley 2002\", \"per\": \"minute\", \"spectrum\": "
-      "{\"radius_mm\": 50, \"neutrons\": {\"energy_ev\": [2e6, 1e4, 0.5, 1e-3], \"share\": [0.01, 0.89, 0.10], "
-      "\"per_cm2\": 6e11, \"by_lethargy\": true}}}" },
-    { "mono-1kev",
-      "{\"format\": \"beamroom-beam\", \"version\": 1, \"name\": \"1 keV, parallel\", \"per\": \"minute\", \"spectrum\": "
-      "{\"radius_mm\": 50, \"neutrons\": {\"energy_ev\": [1001, 1000], \"share\": [1], \"per_cm2\": 6e11, "
-      "\"by_lethargy\": true}}}" },
-};
-
-const char *transport_library_beam(const char *name)
-{
-    for (size_t i = 0; i < sizeof library / sizeof *library; i++)
-        if (strcmp(name, library[i].name) == 0)
-            return library[i].text;
-    return NULL;
-}
-
-const char *transport_library_names(void)
-{
-    return "goorley, mono-1kev";
-}
 
 void transport_print_report(const struct report *report)
 {
@@ -58,9 +29,14 @@ static bool parse(const uint8_t *data, size_t size, const char *name, struct bea
     return is_read;
 }
 
-static bool read_in_folder(const struct folder *folder, const char *name, struct beam_file *file, struct error *err)
+static bool read_in_folder(const struct folder *folder, const char *name, struct beam_file *file,
+                           struct beam_particles *particles, struct error *err)
 {
     struct bytes bytes = { 0 };
+    if (transport_is_particles(name)) {
+        file->particles = beam_file_particles_of(name);
+        return transport_read_particles(folder, name, particles, err);
+    }
     if (folder_look(folder, name, NULL) == FOLDER_ABSENT)
         return error_set(err, ERROR_NOT_FOUND, "%.100s: no such file, and no beam of the library (%s)", name,
                          transport_library_names());
@@ -68,6 +44,8 @@ static bool read_in_folder(const struct folder *folder, const char *name, struct
         return false;
     bool is_read = parse(bytes.data, bytes.size, name, file, err);
     bytes_free(&bytes);
+    if (is_read && file->particles.path[0])
+        return transport_read_particles(folder, file->particles.path, particles, err);
     if (!is_read || !file->source_path[0])
         return is_read;
     if (folder_look(folder, file->source_path, NULL) == FOLDER_ABSENT)
@@ -81,7 +59,8 @@ static bool read_in_folder(const struct folder *folder, const char *name, struct
     return is_read;
 }
 
-bool transport_read_beam(const char *path_or_name, struct beam_file *file, struct error *err)
+bool transport_read_beam(const char *path_or_name, struct beam_file *file, struct beam_particles *particles,
+                         struct error *err)
 {
     const char *text = transport_library_beam(path_or_name);
     if (text)
@@ -97,7 +76,7 @@ bool transport_read_beam(const char *path_or_name, struct beam_file *file, struc
     struct folder folder;
     if (!folder_open(&folder, parent, err))
         return false;
-    bool is_read = read_in_folder(&folder, name, file, err);
+    bool is_read = read_in_folder(&folder, name, file, particles, err);
     folder_close(&folder);
     return is_read;
 }

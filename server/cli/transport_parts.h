@@ -1,5 +1,6 @@
 #pragma once
 /* Parts of `beamroom transport`: beams, materials in voxels, and the dose that a plan gets. */
+#include "core/beam/beam_particles.h"
 #include "core/formats/plan/beam_file.h"
 #include "core/plan/fit.h"
 #include "core/report/report.h"
@@ -9,8 +10,19 @@
 const char *transport_library_beam(const char *name);
 const char *transport_library_names(void); /* for people, with commas */
 
-/* Reads the beam file at a path, with SERA's source that it names, or a beam of the library. */
-NODISCARD bool transport_read_beam(const char *path_or_name, struct beam_file *file, struct error *err);
+/* Reads the beam file at a path, with the source or the particles that it names, a file of particles itself (which says
+ * no strength), or a beam of the library. The caller finishes particles, which are none before. */
+NODISCARD bool transport_read_beam(const char *path_or_name, struct beam_file *file, struct beam_particles *particles,
+                                   struct error *err);
+
+bool transport_is_particles(const char *name); /* by its ending */
+NODISCARD bool transport_read_particles(const struct folder *folder, const char *name, struct beam_particles *particles,
+                                        struct error *err);
+/* The beam's particles at the aperture plane; says on standard output what was taken, in which axes and units, and what
+ * was left out. */
+NODISCARD bool transport_list_of_particles(struct phase_space *space, const struct beam_file *file,
+                                           const struct beam_particles *particles, size_t n_neutrons, size_t n_photons,
+                                           uint64_t seed, struct error *err);
 
 /* Lines of a report on standard error, each with its file. */
 void transport_print_report(const struct report *report);

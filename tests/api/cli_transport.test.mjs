@@ -68,11 +68,88 @@ describe('beamroom transport', () => {
     assert.match(again.stderr, /is there already and is not empty/);
   });
 
+  it('takes the particles of another program, and asks how many real ones they stand for', () => {
+    // 2000 neutrons of 1 keV and an electron, along the file's +x from a disk of 5 cm at x = 40: MCPL with one weight for all.
+    const n = 2001;
+    const head = Buffer.alloc(61);
+    head.write('MCPL003L');
+    head.writeBigUInt64LE(BigInt(n), 8);
+    for (const [at, value] of [
+      [32, 1],
+      [40, 32],
+      [44, 1],
+      [56, 1],
+    ])
+      head.writeUInt32LE(value, at);
+    head.writeDoubleLE(0.5, 48);
+    head.write('t', 60);
+    const body = Buffer.alloc(n * 32);
+    for (let i = 0; i < n; i++) {
+      const radius = 5 * Math.sqrt(i / n);
+      // A direction is 1 / z, y, and the sign of the energy for x, its largest component.
+      const numbers = [40, radius * Math.cos(2.4 * i), radius * Math.sin(2.4 * i), Infinity, 0, 1e-3, 0];
+      for (const [k, value] of numbers.entries()) body.writeFloatLE(value, i * 32 + 4 * k);
+      body.writeInt32LE(i ? 2112 : 11, i * 32 + 28);
+    }
+    writeFileSync(join(folder, 'it.mcpl'), Buffer.concat([head, body]));
+    const beam = join(folder, 'particles.json');
+    const made = { format: 'beamroom-beam', version: 1, per: 'minute', entry_mm: [0, 0, 120], target_mm: [0, 0, 0] };
+    const particles = { file: 'it.mcpl', neutrons_per_unit: 1e12, origin_mm: [400, 0, 0], direction: [1, 0, 0], across: [0, 0, 1] };
+    const run = (out, ...more) => beamroom('transport', plan, '-o', join(folder, out), '--histories', '2000', ...more);
+    writeFileSync(beam, JSON.stringify({ ...made, particles: { ...particles, across_lps: [1, 1, 0] } }));
+    const { status, stdout, stderr } = run('of particles', '--beam', beam);
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /^particles of it\.mcpl, by t, read in cm and MeV:$/m);
+    assert.match(stdout, /1 particles that are neither neutrons nor photons, left out/);
+    assert.match(stdout, /centre is 40, 0, 0 cm in the file; the beam goes to 1, 0, 0; its x is 0, 0, 1$/m);
+    assert.match(stdout, /that x lies along 0\.707, 0\.707, -?0\.000 in patient LPS$/m);
+    assert.match(stdout, /^ {2}2000 neutrons, 1e\+12 per unit of the source$/m);
+    // A spectrum of the same beam gives the same dose within the noise.
+    const spectrum = {
+      radius_mm: 50,
+      neutrons: { energy_ev: [1001, 1000], share: [1], per_cm2: 1e12 / (25 * Math.PI), by_lethargy: true },
+    };
+    writeFileSync(beam, JSON.stringify({ ...made, spectrum }));
+    assert.equal(run('of a spectrum', '--beam', beam).status, 0);
+    const sums = ['of particles', 'of a spectrum'].map((out) => {
+      const { id } = JSON.parse(beamroom('info', join(folder, out), '--json').stdout).doses.at(-1);
+      const file = gunzipSync(readFileSync(join(folder, out, 'doses', `${id}_thermal-fluence.nii.gz`)));
+      let sum = 0;
+      for (let at = Number(file.readBigInt64LE(168)); at < file.length; at += 4) sum += file.readFloatLE(at);
+      return sum;
+    });
+    assert.ok(Math.abs(sums[0] / sums[1] - 1) < 0.15, `${sums}`);
+    for (const [change, sentence] of [
+      [{ neutrons_per_unit: undefined }, /neutrons_per_unit: expected either "neutrons_per_unit" or "histories_per_unit"/],
+      [{ neutrons_per_unit: undefined, histories_per_unit: 1 }, /it\.mcpl does not say how many histories it comes of/],
+      [{ file: 'none.mcpl' }, /none\.mcpl: the file of particles is not there/],
+      [{ direction: [-1, 0, 0] }, /of 2000 neutrons 0 go through the aperture plane/],
+      [{ across: [2, 0, 0] }, /are parallel/],
+      [{ across_lps: [0, 0, 1] }, /across_lps has no part across the beam/],
+    ]) {
+      writeFileSync(beam, JSON.stringify({ ...made, particles: { ...particles, ...change } }));
+      const refused = run('refused', '--beam', beam);
+      assert.equal(refused.status, 1);
+      assert.match(refused.stderr, sentence);
+    }
+    const bare = run('refused', '--beam', join(folder, 'it.mcpl'), '--entry', '0,0,120', '--target', '0,0,0');
+    assert.match(bare.stderr, /it\.mcpl does not say how many real neutrons it stands for; --neutrons-per-unit does/);
+    assert.match(
+      run('refused', '--beam', join(folder, 'it.mcpl'), '--neutrons-per-unit', '1').stderr,
+      /where its aperture is in the patient/,
+    );
+    assert.match(run('refused', '--beam', 'goorley', '--neutrons-per-unit', '1e9').stderr, /is for files of particles/);
+    assert.ok(!existsSync(join(folder, 'refused')));
+  });
+
   it('refuses a beam or a region that is not there by its name', () => {
     const out = join(folder, 'not simulated');
     const none = beamroom('transport', plan, '-o', out, '--beam', join(folder, 'none.json'));
     assert.equal(none.status, 1);
-    assert.match(none.stderr, /none\.json: no such file, and no beam of the library \(goorley, mono-1kev\)/);
+    assert.match(
+      none.stderr,
+      /none\.json: no such file, and no beam of the library \(fir1-like, goorley, mono-10ev, mono-100ev, mono-1kev, mono-10kev\)/,
+    );
     const beam = join(folder, 'other.json');
     const made = { format: 'beamroom-beam', version: 1, source: 'x.source' };
     for (const [change, sentence] of [

@@ -17,7 +17,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     }
     const struct beam_source *source = &file.source;
     REQUIRE(file.n_materials <= BEAM_FILE_MAX_MATERIALS && source->n_cuts <= SOURCE_MAX_CUTS);
-    REQUIRE(file.source_path[0] || (source->neutrons.n_groups >= 1 && source->radius_cm > 0));
+    REQUIRE(file.source_path[0] || file.particles.path[0] || (source->neutrons.n_groups >= 1 && source->radius_cm > 0));
+    REQUIRE(!file.particles.path[0] ||
+            (file.particles.neutrons_per_unit > 0) != (file.particles.histories_per_unit > 0));
     REQUIRE(source->neutrons.n_groups <= SOURCE_MAX_GROUPS && source->photons.n_groups <= SOURCE_MAX_GROUPS);
     for (size_t i = 0; i < file.n_materials; i++)
         REQUIRE(file.materials[i].n_elements <= BEAM_FILE_MAX_ELEMENTS && isfinite(file.materials[i].boron_ppm));

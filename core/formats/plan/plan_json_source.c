@@ -143,6 +143,46 @@ static bool check_distance(const struct json_place *up, const cJSON *spectrum, c
            place_fail(&place, ERROR_RANGE, "distance_mm", "is needed with a delimiter: from the disk to its exit");
 }
 
+struct beam_file_particles beam_file_particles_of(const char *path)
+{
+    struct beam_file_particles particles = { .direction = { 0, 0, 1 }, .across = { 1, 0, 0 } };
+    snprintf(particles.path, sizeof particles.path, "%s", path);
+    return particles;
+}
+
+/* A point or direction that may be absent. */
+static bool get_vector(const struct json_place *place, const cJSON *object, const char *key, struct vec3 *out)
+{
+    return !cJSON_GetObjectItemCaseSensitive(object, key) || place_point(place, object, key, out);
+}
+
+static bool get_particles(const struct json_place *up, const cJSON *object, struct beam_file_particles *particles)
+{
+    struct json_place place = inside(up, "particles");
+    if (!cJSON_IsObject(object))
+        return place_fail(&place, ERROR_FORMAT, "", "expected an object, {...}");
+    static const char *const known[] = { "file",      "neutrons_per_unit", "histories_per_unit",
+                                         "histories", "origin_mm",         "direction",
+                                         "across",    "across_lps",        NULL };
+    place_note_keys(&place, object, known);
+    *particles = beam_file_particles_of("");
+    particles->has_across_lps = cJSON_GetObjectItemCaseSensitive(object, "across_lps") != NULL;
+    if (!place_path(&place, object, "file", true, particles->path) ||
+        !get_number(&place, object, "neutrons_per_unit", 1e-30, SOURCE_MAX_PER_CM2, 0, &particles->neutrons_per_unit) ||
+        !get_number(&place, object, "histories_per_unit", 1e-30, SOURCE_MAX_PER_CM2, 0,
+                    &particles->histories_per_unit) ||
+        !get_number(&place, object, "histories", 1, 1e19, 0, &particles->histories) ||
+        !get_vector(&place, object, "origin_mm", &particles->origin_mm) ||
+        !get_vector(&place, object, "direction", &particles->direction) ||
+        !get_vector(&place, object, "across", &particles->across) ||
+        !get_vector(&place, object, "across_lps", &particles->across_lps))
+        return false;
+    return (particles->neutrons_per_unit > 0) != (particles->histories_per_unit > 0) ||
+           place_fail(&place, ERROR_FORMAT, "neutrons_per_unit",
+                      "expected either \"neutrons_per_unit\" or \"histories_per_unit\": the file does not say how many "
+                      "real neutrons it stands for");
+}
+
 static bool get_elements(const struct json_place *place, const cJSON *object, struct beam_file_material *material)
 {
     const cJSON *weights = cJSON_GetObjectItemCaseSensitive(object, "weights");
@@ -214,16 +254,22 @@ static bool read(const struct json_place *place, const cJSON *root, struct beam_
         return false;
     if (version != 1)
         return place_fail(place, ERROR_UNSUPPORTED, "version", "this program reads version 1");
-    static const char *const known[] = { "format", "version",   "name",     "note",      "source",    "spectrum",
-                                         "per",    "delimiter", "entry_mm", "target_mm", "materials", NULL };
+    static const char *const known[] = { "format",    "version",   "name",      "note",      "source",
+                                         "spectrum",  "per",       "delimiter", "particles", "entry_mm",
+                                         "target_mm", "materials", NULL };
     place_note_keys(place, root, known);
-    const cJSON *spectrum = cJSON_GetObjectItemCaseSensitive(root, "spectrum");
-    if (!spectrum == !cJSON_GetObjectItemCaseSensitive(root, "source"))
-        return place_fail(place, ERROR_FORMAT, "source", "expected either \"source\" or \"spectrum\"");
+    const cJSON *spectrum = cJSON_GetObjectItemCaseSensitive(root, "spectrum"),
+                *particles = cJSON_GetObjectItemCaseSensitive(root, "particles");
+    if (!!spectrum + !!particles + !!cJSON_GetObjectItemCaseSensitive(root, "source") != 1)
+        return place_fail(place, ERROR_FORMAT, "source", "expected one of \"source\", \"spectrum\" and \"particles\"");
+    if (particles && cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(root, "delimiter")))
+        return place_fail(place, ERROR_FORMAT, "delimiter",
+                          "particles of a file are followed from the aperture plane on, with no delimiter before it");
     return place_text(place, root, "name", file->name, sizeof file->name) &&
            place_text(place, root, "per", file->per, sizeof file->per) &&
-           (spectrum ? get_source(place, spectrum, &file->source)
-                     : place_path(place, root, "source", true, file->source_path)) &&
+           (spectrum    ? get_source(place, spectrum, &file->source)
+            : particles ? get_particles(place, particles, &file->particles)
+                        : place_path(place, root, "source", true, file->source_path)) &&
            get_delimiter(place, root, &file->source.delimiter) &&
            (!spectrum || check_distance(place, spectrum, &file->source)) && get_pose(place, root, file) &&
            get_materials(place, root, file);
