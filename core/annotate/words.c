@@ -116,7 +116,8 @@ static int window_digits(double width)
 
 const char *words_unit(const char *unit, char quoted[WORDS_UNIT_SIZE])
 {
-    /* DICOM PS3.3 C.8.9.1 (Units), C.11.1.1.2 (Rescale Type). The page has the same table. */
+    /* DICOM PS3.3 C.8.9.1 (Units), C.11.1.1.2 (Rescale Type). parts/format.js has the same table;
+     * tests/data/unit_words.json holds both. */
     static const struct {
         const char *code, *words;
     } units[] = { { "CNTS", "counts" },

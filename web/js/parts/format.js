@@ -66,7 +66,7 @@ export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 
-// Codes of DICOM: PS3.3 C.8.9.1 (Units), C.11.1.1.2 (Rescale Type). core/annotate/words.c has the same table.
+// Codes of DICOM: PS3.3 C.8.9.1 (Units), C.11.1.1.2 (Rescale Type). core/annotate/words.c has the same table; tests/data/unit_words.json holds both.
 const unitCodes = new Map(
   Object.entries({
     CNTS: say.counts,

@@ -3,7 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { crosshair, shownImage } from '../room/plan.js';
 import { partsOf } from '../features/index.js';
-import { number, significant } from '../parts/format.js';
+import { number, significant, unitText } from '../parts/format.js';
 import { icon, swatch } from '../parts/icons.js';
 import { say } from './words.js';
 
@@ -17,7 +17,7 @@ export function probe(world) {
   const point = crosshair(scene);
   return html`<section class="block"><h3 class="dose-head">${say.probeAt} <span class="grow"></span>${partsOf('probeTool', world)}</h3>
       <div class="numbers">${['L', 'P', 'S'].map((letter, axis) => html`<div><span class="dim">${letter}</span><b>${number(point[axis], 1)}${axis === 2 ? ' mm' : ''}</b></div>`)}
-        ${image ? html`<div class=${classMap({ end: true, old: isOld })}><span class="dim">${image.modality}</span><b>${value && value.value !== null ? `${significant(value.value)} ${value.unit}` : '–'}</b></div>` : nothing}</div>
+        ${image ? html`<div class=${classMap({ end: true, old: isOld })}><span class="dim">${image.modality}</span><b>${value && value.value !== null ? [significant(value.value), unitText(value.unit)].filter(Boolean).join(' ') : '–'}</b></div>` : nothing}</div>
       <div class=${classMap({ inside: true, old: isOld })}>${error ? html`<span class="err">${icon('error')} ${error}</span>` : inside(plan, scene, result, ui)}</div></section>
     ${partsOf('probe', world)}`;
 }

@@ -6,6 +6,7 @@
 
 #include "core/annotate/describe.h"
 #include "core/annotate/font.h"
+#include "core/annotate/words.h"
 #include "core/base/mem.h"
 #include "server/wire/json.h"
 #include "tests/check.h"
@@ -420,6 +421,23 @@ static void characters_that_do_not_show_are_drawn_as_the_page_shows_them(void **
     font_destroy(font);
 }
 
+static void units_are_the_words_of_the_page(void **state)
+{
+    (void)state;
+    cJSON *fixture = read_fixture("tests/data/unit_words.json");
+    const cJSON *pair;
+    int n = 0;
+    cJSON_ArrayForEach(pair, cJSON_GetObjectItem(fixture, "cases"))
+    {
+        char quoted[WORDS_UNIT_SIZE];
+        const char *unit = cJSON_GetArrayItem(pair, 0)->valuestring;
+        assert_string_equal(words_unit(unit, quoted), cJSON_GetArrayItem(pair, 1)->valuestring);
+        n++;
+    }
+    assert_int_equal(n, 30);
+    cJSON_Delete(fixture);
+}
+
 static void hostile_text_is_drawn_as_replacements(void **state)
 {
     (void)state;
@@ -489,6 +507,7 @@ int main(void)
         cmocka_unit_test(more_regions_than_fit_are_counted_and_the_caption_stays_bounded),
         cmocka_unit_test(a_long_name_gives_way_in_the_middle),
         cmocka_unit_test(characters_that_do_not_show_are_drawn_as_the_page_shows_them),
+        cmocka_unit_test(units_are_the_words_of_the_page),
         cmocka_unit_test(hostile_text_is_drawn_as_replacements),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

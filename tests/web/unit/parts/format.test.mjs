@@ -1,5 +1,6 @@
 // How numbers are written.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { load } from '../page.mjs';
 
@@ -31,17 +32,9 @@ test('powers in units are raised, names that end in a digit are left alone', () 
 });
 
 test("units that files give as DICOM's codes are words; a code that DICOM does not know stands in quotation marks", () => {
-  const units = {
-    BQML: 'Bq/mL',
-    GML: 'g/mL (SUV)',
-    CNTS: 'counts',
-    PCNT: '%',
-    NONE: '',
-    HU: 'HU',
-    XYZ_9: '“XYZ_9”',
-    constructor: 'constructor',
-  };
-  for (const [code, words] of Object.entries(units)) assert.equal(unitText(code), words);
+  const { cases } = JSON.parse(readFileSync(new URL('../../../data/unit_words.json', import.meta.url), 'utf8'));
+  assert.equal(cases.length, 30);
+  for (const [code, words] of [...cases, ['constructor', 'constructor']]) assert.equal(unitText(code), words);
   assert.equal(windowText({ center: 5, width: 10 }, 'GML'), 'C 5  W 10 g/mL (SUV)');
   assert.equal(windowText({ center: 5, width: 10 }, 'NONE'), 'C 5  W 10');
 });

@@ -3,6 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
 import { cullsNothing, usualCull } from '../../room/image_look.js';
 import { shownImage } from '../../room/plan.js';
+import { unitText } from '../../parts/format.js';
 import { numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { active3d } from '../../pane/pane_layouts.js';
@@ -42,7 +43,7 @@ function cullRow(scene, image, isDisabled, change) {
   const isOn = value > cullsNothing;
   return html`<div class="checks cull"><label title=${say.leaveOutIs}><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
     @change=${(event) => change({ image: { cull_below: event.target.checked ? usualCull(image, scene.image.window) : cullsNothing } }, event)}>${say.leaveOut}</label>
-    ${isOn ? numberField(say.leaveOutValues, Number(value.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
+    ${isOn ? numberField(say.leaveOutValues, Number(value.toPrecision(6)), unitText(image.unit), isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
 }
 
 /** The ground of 3-D pictures: of everybody in the room, as the lights are. */

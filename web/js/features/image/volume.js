@@ -69,7 +69,7 @@ function cullRow({ room, histograms }, image, volume, isDisabled, change) {
   };
   const value = Number(volume.cull_below.toPrecision(6));
   return html`<div class="checks cull">${checkbox(say.leaveOut, isOn, isDisabled, set, say.leaveOutVolumeIs)}
-    ${isOn ? numberField(say.leaveOutVolume, value, image.unit, isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>
+    ${isOn ? numberField(say.leaveOutVolume, value, unitText(image.unit), isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>
     ${
       histogram
         ? html`<input class="cull-slider" type="range" min=${histogram.low} max=${histogram.high} step=${stepOf(histogram)} .value=${live(String(value))} aria-label=${say.leaveOutSlider} aria-valuetext=${`${significant(value)} ${unitText(image.unit)}`} ?disabled=${isDisabled}

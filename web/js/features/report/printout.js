@@ -164,7 +164,8 @@ function values({ record, probe }, plan) {
   const doses = plan.doses
     .map((dose) => [dose, (probe.doses ?? []).filter((row) => row.id === dose.id && row.value !== null)])
     .filter(([, rows]) => rows.length);
-  const imageValue = value && value.value !== null && [image.modality, significant(value.value), value.unit].filter(Boolean).join(' ');
+  const imageValue =
+    value && value.value !== null && [image.modality, significant(value.value), unitText(value.unit)].filter(Boolean).join(' ');
   const regions = inside.length ? inside.map((region) => say.inRegion({ region })) : [say.outside];
   return html`<p class="values">${say.valuesAre({ values: listed(at, imageValue, ...regions) })}
     ${doses.map((row) => html`<br>${doseValues(...row)}`)}</p>`;
