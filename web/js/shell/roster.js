@@ -1,7 +1,7 @@
 // The members of a room: who presents, follows or waits; what can be done about control; the own name. Loaded when it is first opened.
 import { initials } from '../parts/format.js';
 import { html, nothing } from '../../lib/lit-html.js';
-import { signal } from '../../lib/signals-core.js';
+import { effect, signal, untracked } from '../../lib/signals-core.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { ofMember } from '../net/api.js';
 import { roomCalled } from '../room/room_called.js';
@@ -38,14 +38,34 @@ function buttonsFor(member, { following, control }) {
 }
 
 const isEnding = signal(''); // the wall that is to be ended, once this is pressed again
+const sureMs = 5000;
+let disarm = () => {};
+
+/** For some seconds, and no longer than the popover is open. */
+function arm(id, { ui, clock }) {
+  disarm();
+  const opened = ui.popover.peek();
+  const timer = clock.setTimeout(() => disarm(), sureMs);
+  const stop = effect(() => {
+    if (ui.popover.value !== opened) untracked(disarm);
+  });
+  isEnding.value = id;
+  disarm = () => {
+    disarm = () => {};
+    clock.clearTimeout(timer);
+    stop();
+    isEnding.value = '';
+  };
+}
 
 /** Ends a wall: who presents does, or who may remove people; asked once. */
-function wallButton({ id, name }, { room, connection }) {
+export function wallButton({ id, name }, { room, ui, clock, connection }) {
   if (!room.control.may('control')) return nothing;
   const isSure = isEnding.value === id;
   return html`<span class="roster-buttons"><button class=${isSure ? 'bad' : ''} aria-label=${(isSure ? say.endWallSureOf : say.endWallOf)({ name })} title=${say.endWallIs} @click=${() => {
-    isEnding.value = isSure ? '' : id;
-    if (isSure) connection.send({ type: 'member.remove', member: id, reason: '' });
+    if (!isSure) return arm(id, { ui, clock });
+    disarm();
+    connection.send({ type: 'member.remove', member: id, reason: '' });
   }}>${isSure ? say.endWallSure : say.endWall}</button></span>`;
 }
 

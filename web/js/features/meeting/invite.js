@@ -12,7 +12,8 @@ const words = { observer: say.isObserver, reviewer: say.isReviewer, presenter: s
 const links = signal([]);
 const made = signal(''); // the address of the newest link, which is told once
 const trouble = signal('');
-let nLooks = 0; // an older answer, perhaps of another meeting, is not shown
+let nLooks = 0; // an older answer is not shown
+let nOpened = 0; // nor is the answer to what was asked of another meeting
 
 /** @param {(method: string, path: string, body?: object) => Promise<object>} call of the meeting */
 async function look(call) {
@@ -24,13 +25,15 @@ async function look(call) {
 }
 
 async function act(call, method, path, body) {
+  const mine = nOpened;
   trouble.value = '';
-  try {
-    const answer = await call(method, path, body);
-    made.value = answer?.url ? `${location.origin}${answer.url}` : '';
-  } catch (error) {
-    trouble.value = error.message;
-  }
+  const [answer, error] = await call(method, path, body).then(
+    (given) => [given, null],
+    (reason) => [null, reason],
+  );
+  if (mine !== nOpened) return;
+  made.value = answer?.url ? `${location.origin}${answer.url}` : '';
+  trouble.value = error?.message ?? '';
   await look(call);
 }
 
@@ -49,6 +52,7 @@ const row = (
 
 /** Begins with the links of this meeting. @param {(method: string, path: string, body?: object) => Promise<object>} call of the meeting */
 export function beginInvite(call) {
+  nOpened += 1;
   links.value = [];
   made.value = trouble.value = '';
   void look(call);

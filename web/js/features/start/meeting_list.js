@@ -33,17 +33,22 @@ function meetingForm(meetings, { id = '', name = '', starts_ms = null } = {}) {
 /** A plan of all that this person may see, found by what is typed here. */
 function caseForm(meetings, { id, cases }) {
   const taken = new Set(cases.map(({ plan }) => plan));
-  const { list, total } = meetings.plans.value;
+  const { list, total, hasFailed } = meetings.plans.value;
   const plans = (list ?? []).filter((plan) => !taken.has(plan.id) && plan.state !== 'unreadable');
   const add = (event) => {
     event.preventDefault();
     const plan = new FormData(event.target).get('plan');
     if (plan) void meetings.add(id, plan);
   };
-  const found = !list ? say.looking : plans.length ? say.plansFound({ n: number(plans.length), total: number(total) }) : say.noneFits;
+  const n = plans.length;
+  const found = n ? say.plansFound({ n: number(n), total: number(total - (list.length - n)) }) : hasFailed ? '' : say.noneFits;
   return html`<form class="case-form" @submit=${add} @keydown=${closesByEscape(meetings)}><label>${say.findCase}<input type="search" name="text" autocomplete="off" @input=${(event) => meetings.find(event.target.value, true)}></label>
-    <label>${say.planOfCase}<select name="plan">${plans.map((plan) => html`<option value=${plan.id}>${[plan.patient, titleOf(plan), plan.id].filter(Boolean).join(' · ')}</option>`)}</select></label>
-    <button class="primary" ?disabled=${!plans.length}>${say.addIt}</button><p class="note" role="status">${found}</p></form>`;
+    <label>${say.planOfCase}<select name="plan">${repeat(
+      plans,
+      ({ id: plan }) => plan,
+      (plan) => html`<option value=${plan.id}>${[plan.patient, titleOf(plan), plan.id].filter(Boolean).join(' · ')}</option>`,
+    )}</select></label>
+    <button class="primary" ?disabled=${!plans.length}>${say.addIt}</button><p class="note" role="status">${list ? found : say.looking}</p></form>`;
 }
 
 function stateOf(one) {
@@ -135,9 +140,16 @@ function otherMeetings(meetings) {
   )}</ul></details>`;
 }
 
-async function beginLinks(meetings, id) {
+/** Before the form is drawn: it would show the links of another meeting. */
+async function openLinks(meetings, id) {
+  const form = { meeting: id, kind: 'links' };
+  const begin = () => invite.loaded.peek()?.beginInvite((method, path, body) => meetings.call(id, method, path, body));
+  const isThere = Boolean(invite.loaded.peek());
+  begin();
+  meetings.form.value = form;
+  if (isThere) return;
   await invite.load();
-  invite.loaded.peek()?.beginInvite((method, path, body) => meetings.call(id, method, path, body));
+  if (meetings.form.peek() === form) begin();
 }
 
 const invite = later(() => import('../meeting/invite.js'), 'js/features/meeting/invite.css');
@@ -152,9 +164,9 @@ function meetingCard(meetings, meeting, { hasGuests }) {
   const { id, name, cases, may, n_in, starts_ms } = meeting;
   const form = meetings.form.value?.meeting === id ? meetings.form.value.kind : '';
   const open = (kind) => () => {
+    if (form !== kind && kind === 'links') return void openLinks(meetings, id);
     meetings.form.value = form === kind ? null : { meeting: id, kind };
     if (form !== kind && kind === 'case') meetings.find('');
-    if (form !== kind && kind === 'links') void beginLinks(meetings, id);
   };
   const about = [starts_ms && when(starts_ms), states[meeting.state], n_in > 0 && say.nIn({ n: n_in })].filter(Boolean).join(' · ');
   const canGoIn = meeting.state !== 'over' && cases.length > 0 && (meeting.state === 'running' || may.advance);

@@ -51,7 +51,7 @@ export class MeetingsState {
     this.agendas = signal({}); // by meeting, as GET gives it
     this.error = signal(''); // of what was asked for last
     this.form = signal(null); // {meeting: id, '' of a new one; kind: 'meeting' | 'case' | 'links'} while one is open
-    this.plans = signal({ list: null, total: 0 }); // to choose a new case from, of all that this person may see; list null: not asked yet
+    this.plans = signal({ list: null, total: 0 }); // to choose a new case from, of all that this person may see; list null: not answered yet
     this.dragged = signal(''); // the case that is being dragged
     this.said = signal(''); // for readers of the screen: where a case stands now
   }
@@ -78,21 +78,25 @@ export class MeetingsState {
     return this.#api.call(method, `meetings/${id}${path}`, { body });
   }
 
-  /** Looks for plans for a new case, whatever the list of plans shows. */
+  /** Looks for plans for a new case, whatever the list of plans shows. Plans that another text found are not to choose from meanwhile. */
   find(text, isTyped = false) {
+    this.#nFinds += 1;
+    this.plans.value = { list: null, total: 0 };
     this.#clock.clearTimeout(this.#typing);
     this.#typing = this.#clock.setTimeout(() => void this.#find(text.trim()), isTyped ? typingMs : 0);
   }
 
   async #find(text) {
-    const n = ++this.#nFinds;
+    const n = this.#nFinds;
     try {
       const { plans, total } = await this.#api.call('POST', 'plans/search', {
         body: { text, kind: 'plan', sort: 'used', limit: mostFound },
       });
       if (n === this.#nFinds && !this.#isStopped) this.plans.value = { list: plans, total };
     } catch (error) {
-      if (n === this.#nFinds) this.error.value = error.message;
+      if (n !== this.#nFinds) return;
+      this.error.value = error.message;
+      this.plans.value = { list: [], total: 0, hasFailed: true };
     }
   }
 
@@ -104,8 +108,9 @@ export class MeetingsState {
     if (isDone) this.form.value = null;
   }
 
-  /** Puts a plan on the agenda. */
+  /** Puts a plan on the agenda, unless the plans to choose from are being looked for. */
   async add(id, plan) {
+    if (!this.plans.peek().list) return;
     if (await this.#change(() => this.#api.call('POST', `meetings/${id}/cases`, { body: { plan } }))) this.form.value = null;
   }
 
