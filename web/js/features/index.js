@@ -35,6 +35,7 @@ import { tracks } from './tracks/feature.js';
  * @property {(world) => unknown} [dialog] over the page @property {string[]} [dialogs] the popovers that it shows as dialogs
  * @property {{mode, show, meet, end}} [strip] buttons: (world, size or isDock) => template. mode: tools of the left button, show: what pictures show,
  *   meet: what is for the others in the room, end: what acts on the active pane
+ * @property {string[]} [lateTools] values of ui.tool whose handlers are added by addTool of pane/pane_tools.js once they are loaded
  * @property {(world, act) => unknown} [panesMenu] at the end of the menu of the panes
  * @property {(world) => ({name, place, menu}|null)} [bannerPlan] the name of the shown plan, where it is not the folder's
  * @property {(world) => unknown} [bannerStart] @property {(world) => unknown} [bannerName] below the plan's name @property {(world) => unknown} [bannerFacts]

@@ -1,4 +1,5 @@
 // Handlers that see a pane's input before the pane and draw into it: the chosen tool if it is loaded later, as "Move beam", and that of panes along a beam (beam_panes.js).
+import { signal } from '../../lib/signals-core.js';
 import { features } from '../features/index.js';
 
 /**
@@ -13,7 +14,7 @@ import { features } from '../features/index.js';
  *   overlay: SVG above the picture, CSS px of the pane; handles: HTML above that; header: of the picture on the screen
  */
 
-const makers = new Map();
+const makers = signal(new Map()); // of tools, by name
 /** The part of a feature for panes of this kind; undefined: none. */
 const ofKind = (kind) => features.find(({ panesOf }) => panesOf?.has(kind))?.panesOf;
 
@@ -21,12 +22,17 @@ const ofKind = (kind) => features.find(({ panesOf }) => panesOf?.has(kind))?.pan
  * Adds a tool: while ui.tool is its name, it takes part in panes of every kind.
  * @param {string} name @param {(pane: {room, ui, api, view, actions: import('./pane_actions.js').PaneActions}) => PaneHandler} make called once for each pane
  */
-export const addTool = (name, make) => makers.set(name, make);
+export function addTool(name, make) {
+  makers.value = new Map(makers.peek()).set(name, make);
+}
+
+const isPrimary = (name, [first]) => (name === 'tap' ? !first.shift : ['start', 'move'].includes(name) && first === 'primary');
 
 export class PaneTools {
   #pane;
   #parts;
   #made = new Map();
+  #isLost = false; // the drag began before its tool was loaded
 
   /** @param {object} pane {room, ui, api, view, actions} @param {PaneHandler[]} parts of the features, which are asked last */
   constructor(pane, parts) {
@@ -44,7 +50,7 @@ export class PaneTools {
     const { ui, view } = this.#pane;
     const tool = ui.tool.value;
     const kind = ofKind(view.kind)?.code.loaded.value?.makePane;
-    return [this.#of(tool, makers.get(tool)), this.#of('kind', kind || null)].filter(Boolean);
+    return [this.#of(tool, makers.value.get(tool)), this.#of('kind', kind || null)].filter(Boolean);
   }
 
   /** A view whose camera is locked is moved by nobody until that is loaded. */
@@ -54,8 +60,18 @@ export class PaneTools {
     return own?.isLocked(kind) && !own.code.loaded.peek();
   }
 
+  /** True for what is meant for a tool that is not loaded yet, to the end of the drag: another tool must not act in its place. */
+  #isForLater(name, args) {
+    if (!isPrimary(name, args)) return false;
+    const tool = this.#pane.ui.tool.peek();
+    const isComing = !makers.peek().has(tool) && features.some(({ lateTools }) => lateTools?.includes(tool));
+    if (name === 'start') this.#isLost = isComing;
+    return isComing || (name === 'move' && this.#isLost);
+  }
+
   /** Offers an event. Returns whether it was used; in a view whose camera is locked it always is until that is loaded. */
   take(name, ...args) {
+    if (this.#isForLater(name, args)) return true;
     const isTaken = (handler) => handler[name]?.(...args);
     return this.#handlers.some(isTaken) || this.#isWaiting || this.#parts.some(isTaken);
   }

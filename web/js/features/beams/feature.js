@@ -14,13 +14,16 @@ const hasBeams = (plan) => plan.beams.length + plan.curves.length + plan.images.
 /** Exports of beam_rows.js; null for a plan without beams, and until they are loaded. */
 const ofBeams = ({ plan, scene }) => (plan.value && scene.value?.beam && hasBeams(plan.value) ? known(rows) : null);
 
-/** Turns the tool on that moves a beam, or off again. */
+/** Turns the tool on that moves a beam, or off again. It is on at once: a drag before its code is there moves nothing else. */
 export async function toggleMove(world) {
   const { ui } = world;
   if (ui.tool.value === 'beam') return void (ui.tool.value = 'crosshair');
   ui.choose('beam', '');
+  ui.tool.value = 'beam';
   await editing.load();
-  editing.loaded.peek()?.startMoving(world);
+  if (ui.tool.peek() !== 'beam') return; // left meanwhile
+  if (editing.loaded.peek()) editing.loaded.peek().startMoving(world);
+  else ui.tool.value = 'crosshair';
 }
 
 /** @type {import('../index.js').Feature} */
@@ -41,6 +44,7 @@ export const beams = {
   keys: { beamEye: ({ room, ui }) => toggleBeamEye(room, ui) },
   key: beamKey,
   bar: (world) => (editing.loaded.value || world.room.scene.value?.beam?.draft.enabled ? known(editing)?.draftBar(world) : null),
+  lateTools: ['beam'],
   strip: { mode: (world) => ofBeams(world.room)?.moveTool(world) },
   panesMenu: presetMenu,
   panesOf: {

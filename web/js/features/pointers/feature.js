@@ -26,11 +26,12 @@ function refusal({ pointers }) {
 }
 
 /** Pointing on or off; isAsking: asks everybody to look here. */
-export function pointKey(room, ui, isAsking) {
+export async function pointKey(room, ui, isAsking) {
   const why = refusal(room);
   if (why) return void ui.notify('ok', why, 'point');
-  if (isAsking) panels.loaded.peek()?.askToLook({ room, ui });
-  else room.pointers.isPointing.value = !room.pointers.isPointing.peek();
+  if (!isAsking) return void (room.pointers.isPointing.value = !room.pointers.isPointing.peek());
+  await panels.load();
+  if (!refusal(room)) panels.loaded.peek()?.askToLook({ room, ui });
 }
 
 /** @type {import('../index.js').Feature} */
