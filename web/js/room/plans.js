@@ -48,7 +48,6 @@ export class PlansState {
     this.cursors = signal(['']); // of the pages up to the one that is shown
     this.isOld = signal(false); // the list is another one than was asked for last
     this.unfolded = signal(''); // the plan whose older rooms are shown
-    this.isJoining = signal(false);
     this.isNaming = signal(false);
     this.deleting = signal(null); // {plan, rooms: those on it, null while unknown} while the user has yet to confirm a deletion
   }

@@ -17,6 +17,7 @@ import { later } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';
 import { addressOfPlace, placeOfAddress, places } from './places.js';
 import { planList } from './plan_list.js';
+import { listenPopovers } from './popovers.js';
 import { refusalOf } from './plan_row.js';
 import { reportLines } from '../../parts/report.js';
 import { listenDrops, uploadButton } from './upload.js';
@@ -28,8 +29,10 @@ export { Thumbnails } from './thumbnails.js';
 /** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, session, thumbnails} @returns {() => void} leaves the page */
 export function startPage(host, world) {
   const state = new PlansState({ ...world, place: placeOfAddress(location.search), seen: (plans) => void world.thumbnails.update(plans) });
+  const popover = signal(''); // of the banner: '' | 'upload' | 'look' | 'join'
   const uploads = new UploadsState({
     ...world,
+    popover,
     arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)),
     limit: () => state.version.value?.max_upload_bytes ?? Infinity,
   });
@@ -37,6 +40,10 @@ export function startPage(host, world) {
   const unmount = mount(host, () => page(state, uploads, meetings, world));
   const unkey = listenForSearch(host);
   const unwatch = watchDialog(host, state);
+  const unpopover = listenPopovers(popover, () => {
+    uploads.error.value = '';
+    state.isNaming.value = false;
+  });
   const unlisten = listenDrops(uploads, (file) => openSnapshot(world, file));
   const unaddress = effect(() => keepInAddress(state));
   let newest = 0;
@@ -58,6 +65,7 @@ export function startPage(host, world) {
     meetings.stop();
     unkey();
     uploads.stop();
+    unpopover();
     unlisten();
     unwatch();
     unscroll();
@@ -73,17 +81,11 @@ async function openSnapshot({ api, enter }, file) {
 }
 
 const look = later(() => import('../../shell/look_choice.js'), 'js/shell/look.css');
-const isLookOpen = signal(false);
 
-function lookButton() {
-  const isOpen = isLookOpen.value;
-  const onKey = (event) => {
-    if (event.key !== 'Escape' || !isOpen) return;
-    isLookOpen.value = false;
-    event.currentTarget.querySelector('button').focus();
-  };
-  return html`<span class="anchor" @keydown=${onKey}><button class="ghost" aria-expanded=${isOpen} aria-label=${say.look} title=${say.look} @click=${() => {
-    isLookOpen.value = !isOpen;
+function lookButton(popover) {
+  const isOpen = popover.value === 'look';
+  return html`<span class="anchor"><button class="ghost" aria-expanded=${isOpen} aria-label=${say.look} title=${say.look} @click=${() => {
+    popover.value = isOpen ? '' : 'look';
   }}>${icon('window')}</button>${isOpen ? html`<div class="popover look-card">${look.draw((loaded) => loaded.lookChoice())}</div>` : nothing}</span>`;
 }
 
@@ -115,7 +117,7 @@ const page = (state, uploads, meetings, world) => {
   return html`<div class="start">
   <header class="banner">${brand()}
     <label class="search" data-keys="/">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(event) => state.show({ search: event.target.value })}><kbd aria-hidden="true">/</kbd></label><span class="grow"></span>
-    ${uploadButton(uploads, state.version.value?.max_upload_bytes)}${join(state, enter)}${lookButton()}${session.value?.who() ?? nameButton(state, ownName)}</header>
+    ${uploadButton(uploads, state.version.value?.max_upload_bytes)}${join(uploads.popover, enter)}${lookButton(uploads.popover)}${session.value?.who() ?? nameButton(state, ownName)}</header>
   ${places(state, meetings)}
   <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${isToday ? meetingsToday(meetings, { hasGuests: Boolean(session.value?.facts.value.guest_links) }) : nothing}${planList(state, uploads, world)}${isToday ? roomsList(state, ownName) : nothing}</main>
   <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div></aside>
@@ -144,7 +146,8 @@ const notices = (state) => html`${
       : nothing
   }`;
 
-function join(state, enter) {
+function join(popover, enter) {
+  const isOpen = popover.value === 'join';
   const go = (event) => {
     event.preventDefault();
     const field = event.target.elements.room;
@@ -153,14 +156,12 @@ function join(state, enter) {
     field.setCustomValidity(place === 'rooms' ? '' : say.noRoomId);
     if (field.reportValidity()) enter(id, plan, link);
   };
-  return html`<span class="anchor"><button aria-expanded=${state.isJoining.value} @click=${() => {
-    state.isJoining.value = !state.isJoining.value;
+  return html`<span class="anchor"><button aria-expanded=${isOpen} @click=${() => {
+    popover.value = isOpen ? '' : 'join';
   }}>${icon('people')}<span>${say.joinRoom}</span></button>
     ${
-      state.isJoining.value
-        ? html`<form class="popover invite" @submit=${go} @keydown=${(event) => {
-            if (event.key === 'Escape') state.isJoining.value = false;
-          }}>
+      isOpen
+        ? html`<form class="popover invite" @submit=${go}>
       <label for="join-id">${say.roomIdOrLink}</label><div class="pair">
         <input id="join-id" name="room" autocomplete="off" @input=${(event) => event.target.setCustomValidity('')}>
         <button class="primary">${say.join}</button></div></form>`

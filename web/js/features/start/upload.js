@@ -11,7 +11,7 @@ import { say } from './later_words.js';
 
 function take(uploads, files) {
   uploads.error.value = files.length ? '' : say.noFile;
-  uploads.isOpen.value = false;
+  uploads.popover.value = '';
   if (files.length) uploads.offer(bodyOf(files));
 }
 
@@ -51,17 +51,13 @@ export function listenDrops(uploads, openPicture = async () => false, target = g
 
 /** Its card also stands while something is dragged over the page, and while nothing could be read of what was chosen. */
 export function uploadButton(uploads, limit) {
-  const isShown = uploads.isOpen.value || uploads.isOver.value || uploads.error.value !== '';
-  const show = (isOpen) => {
-    uploads.error.value = '';
-    uploads.isOpen.value = isOpen;
+  const { popover, isOver, error } = uploads;
+  const isShown = popover.value === 'upload' || isOver.value || error.value !== '';
+  const toggle = () => {
+    error.value = '';
+    popover.value = isShown ? '' : 'upload';
   };
-  const onKey = (event) => {
-    if (event.key !== 'Escape' || !isShown) return;
-    show(false);
-    event.currentTarget.querySelector('button').focus();
-  };
-  return html`<span class="anchor" @keydown=${onKey}><button aria-expanded=${isShown} @click=${() => show(!isShown)}>${icon('upload')}<span>${say.upload}</span></button><div class="popover upload-card" ?hidden=${!isShown}>${dropZone(uploads, limit)}</div></span>`;
+  return html`<span class="anchor"><button aria-expanded=${isShown} @click=${toggle}>${icon('upload')}<span>${say.upload}</span></button><div class="popover upload-card" ?hidden=${!isShown}>${dropZone(uploads, limit)}</div></span>`;
 }
 
 function dropZone(uploads, limit) {

@@ -17,14 +17,14 @@ export class UploadsState {
   #tasks = new Map();
 
   /** @param {object} world {api, clock, send: (task: object) => Promise<object>, arrived: (plan: string) => void, limit: () => number} limit in bytes; Infinity while unknown */
-  constructor({ api, clock, send, arrived, limit = () => Infinity }) {
+  constructor({ api, clock, send, arrived, limit = () => Infinity, popover = signal('') }) {
     this.#api = api;
     this.#clock = clock;
     this.#send = send;
     this.limit = limit;
     this.arrived = arrived;
     this.rows = signal([]); // {key, name, bytes, sent, job, error, state: asking (for a name) | sending | working | failed}; name stays in this page
-    this.isOpen = signal(false); // the card to choose files in
+    this.popover = popover; // 'upload': the card to choose files in is open
     this.isOver = signal(false); // something is being dragged over the page
     this.error = signal(''); // an error in choosing, before anything was sent
   }
