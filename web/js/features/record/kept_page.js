@@ -37,7 +37,8 @@ export function recordsPage(host, id, { api, clock }) {
 
 // ---- the list ---------------------------------------------------------------------------------------------------------------
 
-function listPage(api, clock) {
+/** The list, before it is mounted. */
+export function listPage(api, clock) {
   const state = signal({ rows: [], hasMore: false, isReading: true, error: '' });
   const asked = { text: '', kind: '' };
   let [timer, n] = [0, 0];
@@ -52,7 +53,7 @@ function listPage(api, clock) {
     if (number !== n) return; // a later search is under way
     const { rows } = state.value;
     state.value = answer.error
-      ? { ...state.value, isReading: false, error: answer.error }
+      ? { rows: before ? rows : [], hasMore: before !== '' && state.value.hasMore, isReading: false, error: answer.error }
       : { rows: before ? [...rows, ...answer.records] : answer.records, hasMore: answer.more, isReading: false, error: '' };
   }
 
