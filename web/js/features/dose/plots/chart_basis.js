@@ -11,21 +11,23 @@ function hundredRow(result) {
   return ['100 %', Number.isFinite(value) ? listed(inUnit(value, unitPer(result)), words) : (reason ?? say.notKnown)];
 }
 
-/** @param {object} world with doses and curves */
+/** Weights stand here alone, so it is drawn also while the unit and 100 % are not known, or cannot be. @param {object} world with doses and curves */
 export function basisTable(world) {
   const { room, doses, curves } = world;
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  if (!plan?.doses.length || !scene?.dose) return nothing;
   const { result, error } = doses.scale.value;
-  if (error) return html`<h2>${say.basis}</h2><p class="values">${error}</p>`;
-  if (!doses.isOfScene(result)) return nothing;
-  const [plan, { dose }] = [room.plan.value, room.scene.value];
-  const facts = basisRows(world, result.quantity, result, {
-    basis: weightWords(plan, { ...dose, quantity: result.quantity }),
+  const answer = !error && doses.isOfScene(result) ? result : null;
+  const { dose } = scene;
+  const quantity = answer?.quantity ?? dose.quantity;
+  const facts = basisRows(world, quantity, answer, {
+    basis: weightWords(plan, { ...dose, quantity }),
     population: populationWords(curves.population),
-  }).filter(({ id }) => !['plan', 'revision', 'use', 'method'].includes(id));
+  }).filter(({ id }) => !['plan', 'revision', 'use', 'method', ...(answer ? [] : ['unit'])].includes(id));
   const rows = [
     ...facts.map(({ name, values }) => [name, values.join(', ')]),
-    ...(result.quantity === 'isoeffective' ? [[say.irradiation, say.minutes({ n: number(dose.irradiation_min, 1) })]] : []),
-    hundredRow(result),
+    ...(quantity === 'isoeffective' ? [[say.irradiation, say.minutes({ n: number(dose.irradiation_min, 1) })]] : []),
+    ...(answer ? [hundredRow(answer)] : []),
   ];
-  return html`<h2>${say.basis}</h2><p class="values">${say.basisIs}</p><table class="facts"><tbody>${rows.map(([name, value]) => html`<tr><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>`;
+  return html`<h2>${say.basis}</h2>${error ? html`<p class="values">${error}</p>` : nothing}<p class="values">${say.basisIs}</p><table class="facts"><tbody>${rows.map(([name, value]) => html`<tr><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>`;
 }
