@@ -132,6 +132,20 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
       assert.notEqual(await border(on), await border(off), on);
     assert.equal((await border('.pane.active', '::after')).split(' ')[0], '3px');
     assert.equal(await page.locator('[aria-label="Zoom"]').evaluate((button) => getComputedStyle(button).transitionDuration), '0s');
+    await page.setViewportSize(sizes.compact.viewport);
+    await page.locator('[data-section="doses"]').click();
+    const looks = (selector) =>
+      page
+        .locator(selector)
+        .first()
+        .evaluate((element) => {
+          const { borderBottomColor, borderBottomWidth, backgroundImage } = getComputedStyle(element);
+          return { border: `${borderBottomWidth} ${borderBottomColor}`, hasDot: backgroundImage !== 'none' };
+        });
+    const [chosen, other] = [await looks('.dose-radio.on'), await looks('.dose-radio:not(.on)')];
+    assert.deepEqual([chosen.hasDot, other.hasDot], [true, false], 'the chosen quantity has the dot');
+    assert.notEqual(chosen.border, other.border);
+    assert.equal(other.border.split(' ')[0], '1px', 'nor has one that is not chosen the edge of what is on'); // 1.5 px at ratio 1
     await page.context().close();
   });
 
