@@ -261,8 +261,8 @@ test-render: $(RENDER_RUN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
-# Programs that make test leaves out. test-deep has these units under the sanitizers, which hammer at processes, sockets and archives or wait for many
-# seconds; and these pictures, of every back end against the others or drawn in turns, from the same build as make test.
+# Programs that make check and make test leave out. test-deep has these units under the sanitizers, as they hammer at processes, sockets and folders or
+# wait for many seconds; and these pictures, of every back end against the others or drawn in turns, from the same build as make test.
 DEEP_UNIT := $(patsubst %,$(B)/unit/test_%,cache_quota fleet_hostile fleet_restarts fleet_silence tls_hammer)
 DEEP_RENDER := $(patsubst %,$(B)/render/test_%,caps cut_agreement occlusion pauses representations wash_agree)
 test-render-long: $(DEEP_RENDER)
@@ -286,8 +286,9 @@ test-queue: all demo $(unit_BIN) $(render_BIN) $(faults_BIN)
 	    -- unit $(filter-out $(DEEP_UNIT),$(unit_BIN)) -- page-units $(PAGE_UNITS) && [ $$alone = 0 ]
 # What takes longest of the units is for make test.
 SLOW_UNITS := api_routes gamma gamma_oracle plan_jobs recording replay room_following room_recording smooth smooth_slices surface_oracle unpack
-check: all $(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(unit_BIN))
-	$(Q)SLOTS=$(TWICE) $(NODE) tests/queue.mjs lint:1 tests/lint.sh -- unit $(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(unit_BIN)) -- page-units $(PAGE_UNITS)
+CHECK_UNITS = $(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%) $(DEEP_UNIT),$(unit_BIN))
+check: all $(CHECK_UNITS)
+	$(Q)SLOTS=$(TWICE) $(NODE) tests/queue.mjs lint:1 tests/lint.sh -- unit $(CHECK_UNITS) -- page-units $(PAGE_UNITS)
 test-api: all demo
 	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
 	TEST_CONCURRENCY=$(TWICE) tests/run_node.sh api $(API_NODE) && [ $$alone = 0 ]

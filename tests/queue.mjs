@@ -31,7 +31,7 @@ const usual = isLong
   : {
       30: `web/whole_meeting api/idle web/dose web/start api/connections tests/lint web/views faults/test_draw api/ws`,
       20: `web/page api/tls web/display web/patient web/sign_in api/rights_matrix api/hostile api/audit web/pointed api/kept render/test_beam_slice
-        unit/test_plan_data web/watch render/test_pauses unit/test_unpack`,
+        unit/test_plan_data web/watch unit/test_unpack`,
       12: `web/image web/clip web/shell api/identity api/kept_figures api/dvh web/touch web/layout web/snapshot api/http unit/test_tls faults/test_upload
         api/display api/acts web/axe web/regions web/beam_eye web/tracks web/charts web/undo`,
     };

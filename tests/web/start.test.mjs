@@ -259,6 +259,11 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
       `/meetings/${meetings[0].id}/minutes`,
     );
     assert.equal((await call(`${at}/end`, 'POST', {})).status, 200);
+    const paper = await world.newPage(`meetings/${meetings[0].id}/minutes`);
+    await paper.locator('.sheet h1', { hasText: 'Minutes: Tumour board, Friday' }).waitFor();
+    await paper.locator('.sheet', { hasText: 'Phantom: modified Snyder head' }).waitFor();
+    await isClean(paper, 'minutes of a meeting');
+    await paper.context().close();
     const coming = (await call(`${world.daemon.url}/api/v1/meetings`, 'POST', { name: 'Next week', starts_ms: Date.now() + 7 * 86400000 }))
       .json.id;
     await page.locator('.other-meetings summary').click();
@@ -292,6 +297,23 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.keyboard.press('Escape');
     await page.locator('.look-card').waitFor({ state: 'detached' });
     assert.equal(await look.evaluate((button) => button === document.activeElement), true);
+    const open = page.locator('.banner .popover:visible');
+    for (const [button, card] of [
+      [page.getByRole('button', { name: 'Upload' }), '.upload-card'],
+      [look, '.look-card'],
+      [page.getByRole('button', { name: 'Join a room' }), '.invite'],
+      [page.getByRole('button', { name: 'Maija', exact: true }), '#change-name'],
+    ]) {
+      await button.click();
+      await page.locator(`.banner ${card}:visible`).waitFor();
+      assert.equal(await open.count(), 1, `${card} alone is open`);
+    }
+    await page.locator('main').click({ position: { x: 2, y: 2 } });
+    await open.waitFor({ state: 'detached' });
+    await page.getByRole('button', { name: 'Upload' }).click();
+    await page.locator('.upload-card:visible').waitFor();
+    await page.locator('main').click({ position: { x: 2, y: 2 } });
+    await page.locator('.upload-card').waitFor({ state: 'hidden' });
     const row = page.locator(`[data-room="${room}"]`);
     assert.match(await row.textContent(), /Dr Alvarez/);
     await row.getByRole('button').click();
