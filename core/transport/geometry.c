@@ -222,6 +222,19 @@ bool geometry_init(struct geometry *geometry, const struct grid *grid, const uin
     return false;
 }
 
+bool geometry_holds_cell(const struct geometry *geometry, size_t cell)
+{
+    size_t row = (size_t)geometry->n_cells[0], slice = row * (size_t)geometry->n_cells[1];
+    const size_t index[3] = { cell % row, cell % slice / row, cell / slice };
+    for (int axis = 0; axis < 3; axis++) {
+        double per_cm = (double)geometry->cells_per_cm[axis], shift = (double)geometry->cells_shift[axis],
+               a = ((double)index[axis] - shift) / per_cm, b = a + 1 / per_cm;
+        if (fmin(a, b) < -1e-3 || fmax(a, b) > (double)geometry->size_cm[axis] + 1e-3)
+            return false;
+    }
+    return true;
+}
+
 void geometry_finish(struct geometry *geometry)
 {
     free(geometry->blocks);

@@ -42,6 +42,9 @@ NODISCARD bool geometry_init(struct geometry *geometry, const struct grid *grid,
                              const struct grid *cells, double cell_mm, const atomic_bool *cancel, struct error *err);
 void geometry_finish(struct geometry *geometry);
 
+/* True if a cell lies wholly in the box: particles are followed in all of it. */
+bool geometry_holds_cell(const struct geometry *geometry, size_t cell);
+
 /* A patient point in the box's frame, and a direction. */
 void geometry_place(const struct geometry *geometry, struct vec3 point_lps_mm, double position_cm[3]);
 void geometry_direct(const struct geometry *geometry, struct vec3 direction_lps, double direction[3]);

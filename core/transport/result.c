@@ -51,7 +51,7 @@ static bool fill(const struct transport_run *run, struct transport_result *resul
     double scale = run->input.beam->neutrons.per_unit / (double)run->n_histories / cell_cm3;
     for (size_t cell = 0; cell < run->n_cells; cell++) {
         float matter = run->geometry.matter[cell];
-        if (!run->input.is_whole_cells && matter < LEAST_MATTER)
+        if (run->input.is_whole_cells ? !geometry_holds_cell(&run->geometry, cell) : matter < LEAST_MATTER)
             continue;
         ((uint8_t *)result->mask->voxels)[cell] = 1;
         for (int i = 0; i < TRANSPORT_N_QUANTITIES; i++)

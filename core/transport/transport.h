@@ -50,7 +50,9 @@ struct transport_balance {
 struct transport_result {
     struct volume *values[TRANSPORT_N_QUANTITIES]; /* per unit of the source */
     struct volume *errors[TRANSPORT_N_QUANTITIES]; /* one standard deviation, in the unit of the values */
-    struct volume *mask; /* U8: 1 where a cell holds enough that is not air (a twentieth), or counts whole */
+    /* U8: 1 where a cell holds enough that is not air (a twentieth). Cells that count whole: where one lies wholly
+     * within GEOMETRY_PAD_CM of the matter's bounds, beyond which nothing is followed. */
+    struct volume *mask;
     uint64_t n_histories;
     double seconds;
     struct transport_balance balance;

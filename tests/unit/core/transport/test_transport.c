@@ -519,6 +519,34 @@ static void a_disk_within_its_delimiter_is_refused_with_both_lengths(void **stat
     assert_string_equal(err.text, "source made: a disk of 31 cm in radius, at most 30 expected");
 }
 
+/* Cells of a dose of others that reach beyond the box in which particles are followed have no dose, and not one of 0.
+ * The ball of 3 cm in the middle of 8 cm has a box from -1 to 9 cm along each axis. */
+static void whole_cells_count_where_particles_are_followed(void **state)
+{
+    (void)state;
+    struct world_made *world = make(3, 1000, 16000, 29);
+    fill(world, in_sphere);
+    struct grid cells;
+    struct error err = { 0 };
+    struct affine map = { { { -10, 0, 0 }, { 0, 10, 0 }, { 0, 0, 8 } }, { 104.5, -15.5, -46 } };
+    assert_true(grid_init(&cells, (uint32_t[]){ 12, 14, 19 }, &map, &err));
+    world->input.cells = &cells;
+    world->input.is_whole_cells = true;
+    struct transport_result result = run(world);
+    for (uint32_t k = 0; k < 19; k++)
+        for (uint32_t j = 0; j < 14; j++)
+            for (uint32_t i = 0; i < 12; i++) {
+                struct vec3 at = affine_point(&map, vec3(i, j, k));
+                bool is_within = at.x > -5.1 && at.x < 85.1 && at.y > -5.1 && at.y < 85.1 && at.z > -6.1 && at.z < 86.1;
+                assert_true((volume_value(result.mask, i, j, k) > 0) == is_within);
+                bool is_beam = is_within && hypot(at.x - 40, at.y - 40) < 20;
+                assert_true((volume_value(result.values[TRANSPORT_EPITHERMAL_FLUENCE], i, j, k) > 0) || !is_beam);
+                assert_true(is_within || volume_value(result.values[TRANSPORT_BORON], i, j, k) <= 0);
+            }
+    transport_result_finish(&result);
+    drop(world);
+}
+
 static void input_beyond_its_limits_is_refused_with_what_was_expected(void **state)
 {
     (void)state;
@@ -573,6 +601,7 @@ int main(void)
         cmocka_unit_test(a_step_that_is_cancelled_at_work_leaves_nothing_of_it),
         cmocka_unit_test(air_before_a_short_delimiter_takes_no_neutron),
         cmocka_unit_test(a_disk_within_its_delimiter_is_refused_with_both_lengths),
+        cmocka_unit_test(whole_cells_count_where_particles_are_followed),
         cmocka_unit_test(input_beyond_its_limits_is_refused_with_what_was_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
