@@ -10,7 +10,7 @@ static inline void direction_turn(float direction[3], float cosine, const float 
 {
     float square = 1.F - cosine * cosine, sine = square > 0 ? sqrtf(square) : 0, a = sine * azimuth[0],
           b = sine * azimuth[1];
-    float u = direction[0], v = direction[1], w = direction[2], across = 1.F - w * w;
+    float u = direction[0], v = direction[1], w = direction[2], across = u * u + v * v;
     if (across < 1e-6F) {
         direction[0] = a;
         direction[1] = b;

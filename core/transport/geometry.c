@@ -7,14 +7,22 @@
 
 #include "core/base/mem.h"
 
+static bool goes_on(const atomic_bool *cancel, struct error *err)
+{
+    return !(cancel && atomic_load(cancel)) || error_set(err, ERROR_CANCELLED, "the simulation was cancelled");
+}
+
 /* Spans in voxels along each axis that hold matter. */
-static bool bounds(const struct geometry *geometry, uint32_t low[3], uint32_t high[3])
+static bool bounds(const struct geometry *geometry, const atomic_bool *cancel, uint32_t low[3], uint32_t high[3],
+                   struct error *err)
 {
     memcpy(low, geometry->n, 3 * sizeof *low);
     memset(high, 0, 3 * sizeof *high);
     bool has_matter = false;
     const uint8_t *at = geometry->voxels;
-    for (uint32_t k = 0; k < geometry->n[2]; k++)
+    for (uint32_t k = 0; k < geometry->n[2]; k++) {
+        if (!goes_on(cancel, err))
+            return false;
         for (uint32_t j = 0; j < geometry->n[1]; j++)
             for (uint32_t i = 0; i < geometry->n[0]; i++, at++) {
                 if (*at == 0)
@@ -26,7 +34,8 @@ static bool bounds(const struct geometry *geometry, uint32_t low[3], uint32_t hi
                     high[axis] = index[axis] + 1 > high[axis] ? index[axis] + 1 : high[axis];
                 }
             }
-    return has_matter;
+    }
+    return has_matter || error_set(err, ERROR_RANGE, "no voxel holds matter: every region is air");
 }
 
 static bool make_frame(struct geometry *geometry, const struct grid *grid, struct error *err)
@@ -45,11 +54,12 @@ static bool make_frame(struct geometry *geometry, const struct grid *grid, struc
     return true;
 }
 
-static bool make_box(struct geometry *geometry, const struct grid *grid, double step_cm, struct error *err)
+static bool make_box(struct geometry *geometry, const struct grid *grid, double step_cm, const atomic_bool *cancel,
+                     struct error *err)
 {
     uint32_t low[3], high[3];
-    if (!bounds(geometry, low, high))
-        return error_set(err, ERROR_RANGE, "no voxel holds matter: every region is air");
+    if (!bounds(geometry, cancel, low, high, err))
+        return false;
     double corner[3];
     for (int axis = 0; axis < 3; axis++) {
         double per_cm = (double)geometry->per_cm[axis];
@@ -94,11 +104,6 @@ static uint8_t block_material(const struct geometry *geometry, const int32_t blo
                     return GEOMETRY_MIXED;
         }
     return first;
-}
-
-static bool goes_on(const atomic_bool *cancel, struct error *err)
-{
-    return !(cancel && atomic_load(cancel)) || error_set(err, ERROR_CANCELLED, "the simulation was cancelled");
 }
 
 static bool make_blocks(struct geometry *geometry, const atomic_bool *cancel, struct error *err)
@@ -209,7 +214,7 @@ bool geometry_init(struct geometry *geometry, const struct grid *grid, const uin
     if (!cells && !(cell_mm >= 1 && cell_mm <= 50))
         return error_set(err, ERROR_RANGE, "cells of %g mm, 1 to 50 expected", cell_mm);
     double step_cm = cells ? GEOMETRY_BLOCK_CM : cell_mm / 10;
-    if (!make_frame(geometry, grid, err) || !make_box(geometry, grid, step_cm, err))
+    if (!make_frame(geometry, grid, err) || !make_box(geometry, grid, step_cm, cancel, err))
         return false;
     if (cells)
         geometry->cells = *cells;

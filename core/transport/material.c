@@ -23,6 +23,7 @@ static const struct material tissues[] = {
     { "water", 1.00, { .1119, 0, 0, .8881, 0, 0, 0, 0, 0, 0, 0 }, 0 },
 };
 enum { N_TISSUES = sizeof tissues / sizeof *tissues };
+static const char *const symbols[N_ELEMENTS] = { "H", "C", "N", "O", "Na", "Mg", "P", "S", "Cl", "K", "Ca" };
 
 bool material_of_word(const char *word, struct material *material, struct error *err)
 {
@@ -40,7 +41,6 @@ bool material_of_word(const char *word, struct material *material, struct error 
 
 bool material_set_element(struct material *material, const char *symbol, double fraction, struct error *err)
 {
-    static const char *const symbols[N_ELEMENTS] = { "H", "C", "N", "O", "Na", "Mg", "P", "S", "Cl", "K", "Ca" };
     for (int i = 0; i < N_ELEMENTS; i++)
         if (strcasecmp(symbol, symbols[i]) == 0) {
             material->weight[i] = fraction;
@@ -203,13 +203,12 @@ bool material_check(const struct material *material, struct error *err)
     double sum = 0;
     for (int i = 0; i < N_ELEMENTS; i++) {
         if (!(material->weight[i] >= 0 && material->weight[i] <= 1))
-            return error_set(err, ERROR_RANGE, "material %s: weight fraction %g, 0 to 1 expected", material->word,
-                             material->weight[i]);
+            return error_set(err, ERROR_RANGE, "material %s: weight fraction %g of %s, 0 to 1 expected", material->word,
+                             material->weight[i], symbols[i]);
         sum += material->weight[i];
     }
-    if (!(sum <= 1.02) || sum + material->boron_ppm <= 0)
-        return error_set(err, ERROR_RANGE,
-                         "material %s: weight fractions add up to %g, at most 1.02 and not 0 expected", material->word,
-                         sum);
-    return true;
+    bool is_boron_alone = sum <= 0 && material->boron_ppm > 0;
+    return is_boron_alone || (sum >= .98 && sum <= 1.02) ||
+           error_set(err, ERROR_RANGE, "material %s: weight fractions add up to %g, 0.98 to 1.02 expected",
+                     material->word, sum);
 }

@@ -38,6 +38,6 @@ NODISCARD bool material_set_element(struct material *material, const char *symbo
  * structure that only shapes a dose, "PTV_avoid", without a material of its own. NULL if the name tells nothing, for
  * the caller to choose one and to say so. */
 const char *material_word_of_region(const char *region_name);
-/* ERROR_RANGE: density above 0 to MATERIAL_MAX_G_CM3, each fraction 0 to 1, their sum 0 to 1.02 and not 0 without
- * boron, boron 0 to MATERIAL_MAX_PPM; all finite. */
+/* ERROR_RANGE: density above 0 to MATERIAL_MAX_G_CM3, each fraction 0 to 1, their sum 0.98 to 1.02 (or 0: boron alone),
+ * boron 0 to MATERIAL_MAX_PPM; all finite. */
 NODISCARD bool material_check(const struct material *material, struct error *err);

@@ -6,7 +6,7 @@
 #include "core/transport/photon_data.h"
 
 #define AVOGADRO_B .602214 /* 1e24 per mol */
-#define BORON_2200_B 3837. /* absorption of boron-10 at 2200 m/s */
+#define BORON_2200_B 3835. /* absorption of boron-10 at 2200 m/s: Sears, as below */
 #define BORON_G_MOL 10.0129
 
 /* Atomic mass, charge; absorption and radiative capture at 2200 m/s, barn; photon energy a capture emits, MeV; the
@@ -106,18 +106,25 @@ static void emission(struct medium *medium, const double atoms[N_ELEMENTS + 1])
     }
 }
 
-void medium_init(struct medium *medium, const struct material *material)
+/* In a gram, in those of a gram of water. */
+static double electrons_of(const struct material *material)
 {
-    double atoms[N_ELEMENTS + 1], electrons = 0, weight = 0;
-    densities(material, atoms);
-    medium->absorption_2200_cm = atoms[BORON] * BORON_2200_B;
+    double electrons = 0, weight = 0, water_per_g = 10 / 18.0153;
     for (int i = 0; i < N_ELEMENTS; i++) {
-        medium->absorption_2200_cm += atoms[i] * elements[i].absorption_b;
         electrons += material->weight[i] * elements[i].charge / elements[i].g_mol;
         weight += material->weight[i];
     }
-    double water_per_g = 10 / 18.0153;
-    medium->electrons = (float)(weight > 0 ? material->g_cm3 * electrons / weight / water_per_g : material->g_cm3 * .9);
+    return weight > 0 ? electrons / weight / water_per_g : .9;
+}
+
+void medium_init(struct medium *medium, const struct material *material)
+{
+    double atoms[N_ELEMENTS + 1];
+    densities(material, atoms);
+    medium->absorption_2200_cm = atoms[BORON] * BORON_2200_B;
+    for (int i = 0; i < N_ELEMENTS; i++)
+        medium->absorption_2200_cm += atoms[i] * elements[i].absorption_b;
+    medium->electrons = (float)(material->g_cm3 * electrons_of(material));
     scattering(medium, atoms);
     emission(medium, atoms);
 }
@@ -154,6 +161,8 @@ static double recoil_gy_cm2(double energy_ev)
 void particle_tables_init(struct particle_tables *tables)
 {
     water_tables(tables);
+    struct material brain = { 0 };
+    double brain_electrons = material_of_word("brain", &brain, NULL) ? electrons_of(&brain) : 1;
     for (int bin = 0; bin < NEUTRON_N_BINS; bin++) {
         double energy_ev = neutron_bin_ev(bin);
         tables->water_group_of_bin[bin] = (uint8_t)water_group(energy_ev);
@@ -165,8 +174,8 @@ void particle_tables_init(struct particle_tables *tables)
     for (int bin = 0; bin < PHOTON_N_BINS; bin++) {
         double energy_mev = photon_bin_mev(bin);
         tables->photon_cm2_g[bin] = (float)photon_attenuation_cm2_g(energy_mev);
-        /* Brain has 0.9946 of water's electrons in a gram. */
-        tables->photon_gy_cm2[bin] = (float)(photon_absorption_cm2_g(energy_mev) * .9946 * energy_mev * 1.602177e-10);
+        tables->photon_gy_cm2[bin] =
+            (float)(photon_absorption_cm2_g(energy_mev) * brain_electrons * energy_mev * 1.602177e-10);
         tables->photon_compton[bin] = (float)photon_compton_share(energy_mev);
     }
     for (int i = 0; i < 1024; i++) {

@@ -51,8 +51,9 @@ struct particle_tables {
     float cosine[3][NEUTRON_N_BINS];     /* of C, N, O */
     float inverse_speed[NEUTRON_N_BINS]; /* sqrt(0.0253 eV / E) */
     float recoil_gy_cm2[NEUTRON_N_BINS]; /* fast neutron's kerma per fluence in ICRU 46 brain */
-    float photon_cm2_g[PHOTON_N_BINS], photon_gy_cm2[PHOTON_N_BINS], photon_compton[PHOTON_N_BINS];
-    float azimuth[1024][2]; /* cosine, sine */
+    float photon_cm2_g[PHOTON_N_BINS], photon_compton[PHOTON_N_BINS];
+    float photon_gy_cm2[PHOTON_N_BINS]; /* kerma per fluence in ICRU 46 brain */
+    float azimuth[1024][2];             /* cosine, sine */
 };
 void particle_tables_init(struct particle_tables *tables);
 

@@ -18,7 +18,6 @@ enum nuclide_id {
 enum { NUCLIDE_N_GROUPS = 72, WATER_N_GROUPS = 29 };
 
 struct nuclide {
-    char symbol[3];
     float mass;                        /* in units of the neutron's mass */
     float scatter_b[NUCLIDE_N_GROUPS]; /* elastic scattering, barn per atom */
     float cosine[NUCLIDE_N_GROUPS];    /* mean cosine in the centre-of-mass system */

@@ -129,7 +129,7 @@ static bool make_list(struct particle_list *list, const struct particle *used, c
     list->per_unit = per_weight * sum;
     for (size_t lane = 0; lane < PHASE_SPACE_LANES; lane++) {
         size_t at = n_used * lane / PHASE_SPACE_LANES, end = n_used * (lane + 1) / PHASE_SPACE_LANES;
-        struct random random = random_of(seed, 2 * lane + are_photons);
+        struct random random = random_of(seed, PHASE_SPACE_STREAM | (2 * lane + are_photons));
         draw(used + at, end - at, are_photons, list->particles + lane, n / PHASE_SPACE_LANES, sum / (double)n, &random);
     }
     return true;

@@ -13,7 +13,8 @@ static const struct {
 } delimiter_material = { .0545, .0308, .0104, .0075, .0005025, 1.031 };
 #define LITHIUM_6_2200_B 940. /* Sears 1992, as in medium.c */
 #define FARTHEST_CM 30.       /* from the axis: beyond, a particle is lost */
-#define PER_ENTRY_TRIES 100000
+/* A lane gives up after FIRST_TRIES, and MOST_TRIES for each entry that it has. */
+enum { MOST_TRIES = 2000, FIRST_TRIES = 100000 };
 
 struct drawing {
     const struct beam_source *source;
@@ -24,6 +25,7 @@ struct drawing {
     size_t n;
     uint64_t seed;
     bool are_photons;
+    const atomic_bool *cancel;
     uint64_t tries[PHASE_SPACE_LANES]; /* by lane; 0: it found none */
 };
 
@@ -52,15 +54,23 @@ static void prepare(struct drawing *drawing)
     }
 }
 
+/* Of a current of Maxwell's spectrum, E exp(-E / 0.0253 eV), within bounds. */
+static double draw_slow_ev(double low, double high, struct random *random)
+{
+    for (;;) {
+        double energy_ev = sqrt(low * low + (high * high - low * low) * (double)random_unit(random));
+        if ((double)random_unit(random) <= exp((low - energy_ev) / .0253))
+            return energy_ev;
+    }
+}
+
 static double draw_energy_ev(const struct drawing *drawing, size_t group, struct random *random)
 {
     double low = drawing->spectrum->bounds_ev[group + 1], high = drawing->spectrum->bounds_ev[group];
     if (drawing->are_photons)
         return low + (high - low) * (double)random_unit(random);
-    if (high <= .11 && !drawing->spectrum->is_by_lethargy) { /* a current of Maxwell's spectrum */
-        double energy_ev = -.0253 * (log((double)random_unit(random)) + log((double)random_unit(random)));
-        return fmin(fmax(energy_ev, 2e-3), high);
-    }
+    if (high <= .11 && !drawing->spectrum->is_by_lethargy)
+        return draw_slow_ev(low, high, random);
     return low * pow(high / low, (double)random_unit(random));
 }
 
@@ -188,21 +198,28 @@ static bool draw(const struct drawing *drawing, struct particle *particle, struc
     return hypotf(particle->x_cm, particle->y_cm) <= (float)FARTHEST_CM;
 }
 
+/* False if it gives up. */
+static bool draw_entry(const struct drawing *drawing, size_t i, uint64_t *tries)
+{
+    struct random random = random_of(drawing->seed, PHASE_SPACE_STREAM | (2 * i + drawing->are_photons));
+    uint64_t most = FIRST_TRIES + i / PHASE_SPACE_LANES * MOST_TRIES;
+    do {
+        if (*tries >= most || (drawing->cancel && atomic_load(drawing->cancel)))
+            return false;
+        ++*tries;
+    } while (!draw(drawing, &drawing->particles[i], &random));
+    return true;
+}
+
 static void draw_lanes(void *context, int part, int n_parts)
 {
     struct drawing *drawing = context;
     for (int lane = part; lane < PHASE_SPACE_LANES; lane += n_parts)
-        for (size_t i = (size_t)lane; i < drawing->n; i += PHASE_SPACE_LANES) {
-            struct random random = random_of(drawing->seed, 2 * i + drawing->are_photons);
-            int tries = 1;
-            while (!draw(drawing, &drawing->particles[i], &random) && tries < PER_ENTRY_TRIES)
-                tries++;
-            if (tries == PER_ENTRY_TRIES) {
+        for (size_t i = (size_t)lane; i < drawing->n; i += PHASE_SPACE_LANES)
+            if (!draw_entry(drawing, i, &drawing->tries[lane])) {
                 drawing->tries[lane] = 0;
                 break;
             }
-            drawing->tries[lane] += (uint64_t)tries;
-        }
 }
 
 static bool draw_list(struct particle_list *list, struct drawing *drawing, size_t n, int n_threads, struct error *err)
@@ -215,11 +232,14 @@ static bool draw_list(struct particle_list *list, struct drawing *drawing, size_
     drawing->n = list->n = n;
     prepare(drawing);
     parallel_run(n_threads < PHASE_SPACE_LANES ? n_threads : PHASE_SPACE_LANES, draw_lanes, drawing);
+    if (drawing->cancel && atomic_load(drawing->cancel))
+        return error_set(err, ERROR_CANCELLED, "drawing the beam's particles was cancelled");
     uint64_t tries = 0;
     for (int lane = 0; lane < PHASE_SPACE_LANES && n > 0; lane++) {
         if (drawing->tries[lane] == 0)
-            return error_set(err, ERROR_RANGE, "source %s: of %d particles none reaches the aperture",
-                             drawing->source->name, PER_ENTRY_TRIES);
+            return error_set(err, ERROR_RANGE,
+                             "source %.100s: fewer than one of %d particles, or none of %d, reaches the aperture",
+                             drawing->source->name, MOST_TRIES, FIRST_TRIES);
         tries += drawing->tries[lane];
     }
     double area_cm2 = M_PI * drawing->source->radius_cm * drawing->source->radius_cm;
@@ -240,7 +260,7 @@ static bool check_source(const struct beam_source *source, struct error *err)
 }
 
 bool phase_space_of_source(struct phase_space *space, const struct beam_source *source, size_t n_neutrons,
-                           size_t n_photons, uint64_t seed, int n_threads, struct error *err)
+                           size_t n_photons, uint64_t seed, int n_threads, const atomic_bool *cancel, struct error *err)
 {
     *space = (struct phase_space){ 0 };
     if (n_neutrons > PHASE_SPACE_MAX_PARTICLES || n_photons > PHASE_SPACE_MAX_PARTICLES)
@@ -252,10 +272,11 @@ bool phase_space_of_source(struct phase_space *space, const struct beam_source *
     if (!tables)
         return false;
     particle_tables_init(tables);
-    struct drawing drawing = { source, &source->neutrons, tables, .seed = seed };
+    struct drawing drawing = { source, &source->neutrons, tables, .seed = seed, .cancel = cancel };
     bool is_done = draw_list(&space->neutrons, &drawing, n_neutrons, n_threads, err);
     if (is_done && source->photons.per_cm2 > 0) {
-        drawing = (struct drawing){ source, &source->photons, tables, .seed = seed, .are_photons = true };
+        drawing =
+            (struct drawing){ source, &source->photons, tables, .seed = seed, .are_photons = true, .cancel = cancel };
         is_done = draw_list(&space->photons, &drawing, n_photons, n_threads, err);
     }
     free(tables);

@@ -1,5 +1,6 @@
 #pragma once
 /* Particles at the aperture plane of a beam, as a list that histories take theirs from. Owned: create, destroy. */
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -7,6 +8,7 @@
 #include "core/beam/beam_source.h"
 
 enum { PHASE_SPACE_MAX_PARTICLES = 4000000, PHASE_SPACE_LANES = 16 };
+#define PHASE_SPACE_STREAM (UINT64_C(1) << 61) /* random numbers of lists, beyond those of histories */
 
 /* In the beam's own axes: it goes to +z, z = 0 is the aperture plane, the axis goes through x = y = 0. */
 struct particle {
@@ -28,11 +30,14 @@ struct phase_space {
  * less weight.
  *
  *   n_neutrons, n_photons  rounded up to a multiple of PHASE_SPACE_LANES; photons only if the source has any
- *   errors                 ERROR_RANGE a source that lets nothing through, a disk of more than 30 cm in
- *                          radius or within the delimiter; ERROR_LIMIT; ERROR_MEMORY
+ *   cancel                 NULL: not wanted
+ *   errors                 ERROR_RANGE a source that lets nothing through, or less than one of 2000 particles,
+ *                          a disk of more than 30 cm in radius or within the delimiter; ERROR_LIMIT;
+ *                          ERROR_MEMORY; ERROR_CANCELLED within one particle of each thread
  *   thread                 any; equal for a seed and any number of threads */
 NODISCARD bool phase_space_of_source(struct phase_space *space, const struct beam_source *source, size_t n_neutrons,
-                                     size_t n_photons, uint64_t seed, int n_threads, struct error *err);
+                                     size_t n_photons, uint64_t seed, int n_threads, const atomic_bool *cancel,
+                                     struct error *err);
 /* How much more often than its share a neutron of an energy is drawn. */
 double phase_space_importance(double energy_ev);
 void phase_space_finish(struct phase_space *space);

@@ -15,10 +15,17 @@ enum { CHUNK = 256, NEUTRONS_PER_PHOTON = 8 };
 static bool check_pose(struct vec3 aperture_lps_mm, struct vec3 direction_lps, struct error *err)
 {
     if (!vec3_is_finite(aperture_lps_mm) || vec3_length(aperture_lps_mm) > GRID_FARTHEST_MM)
-        return error_set(err, ERROR_RANGE, "the aperture is farther than %g mm from the origin", GRID_FARTHEST_MM);
+        return error_set(err, ERROR_RANGE, "the aperture is at %g, %g, %g mm, at most %g from the origin expected",
+                         aperture_lps_mm.x, aperture_lps_mm.y, aperture_lps_mm.z, GRID_FARTHEST_MM);
     if (!vec3_is_finite(direction_lps) || !(fabs(vec3_length(direction_lps) - 1) < 1e-3))
-        return error_set(err, ERROR_RANGE, "the beam's direction is not of length 1");
+        return error_set(err, ERROR_RANGE, "the beam's direction is %g, %g, %g, of length %g, 1 expected",
+                         direction_lps.x, direction_lps.y, direction_lps.z, vec3_length(direction_lps));
     return true;
+}
+
+static bool say_cancelled(struct error *err)
+{
+    return error_set(err, ERROR_CANCELLED, "the simulation was cancelled");
 }
 
 static bool check_voxels(const struct transport_input *input, struct error *err)
@@ -28,11 +35,14 @@ static bool check_voxels(const struct transport_input *input, struct error *err)
     for (size_t i = 0; i < input->n_materials; i++)
         if (!material_check(&input->materials[i], err))
             return false;
-    size_t n = grid_n_voxels(input->grid);
-    for (size_t i = 0; i < n; i++)
+    size_t n = grid_n_voxels(input->grid), slice = (size_t)input->grid->size[0] * input->grid->size[1];
+    for (size_t i = 0; i < n; i++) {
+        if (i % slice == 0 && input->cancel && atomic_load(input->cancel))
+            return say_cancelled(err);
         if (input->voxels[i] > input->n_materials)
             return error_set(err, ERROR_RANGE, "voxel %zu has material %d, at most %zu expected", i, input->voxels[i],
                              input->n_materials);
+    }
     return true;
 }
 
@@ -48,11 +58,6 @@ static bool check(const struct transport_input *input, struct error *err)
 static bool is_asked_to_stop(const struct transport_run *run)
 {
     return run->input.cancel && atomic_load(run->input.cancel);
-}
-
-static bool say_cancelled(struct error *err)
-{
-    return error_set(err, ERROR_CANCELLED, "the simulation was cancelled");
 }
 
 static bool make_lanes(struct transport_run *run, struct error *err)

@@ -7,7 +7,7 @@
 #include "core/transport/phase_space.h"
 #include "core/volume/volume.h"
 
-#define TRANSPORT_MODEL "2" /* changes with whatever changes a number */
+#define TRANSPORT_MODEL "3" /* changes with whatever changes a number */
 #define TRANSPORT_MAX_HISTORIES UINT64_C(100000000000)
 #define TRANSPORT_BATCH UINT64_C(1048576) /* histories of a step that a cancelled one loses at most */
 

@@ -80,6 +80,16 @@ static inline int locate(const struct world *world, const struct lane *lane, con
     return geometry_material_in(world->geometry, block, position);
 }
 
+/* Flies to the next tentative collision, a mean of 1 / highest away: the material and the cell there, as locate. */
+static inline int fly(const struct world *world, const struct lane *lane, float position[3], const float direction[3],
+                      float highest, uint64_t bits, ptrdiff_t *cell)
+{
+    float step = -logf(random_high(bits)) / highest;
+    for (int i = 0; i < 3; i++)
+        position[i] += direction[i] * step;
+    return locate(world, lane, position, cell);
+}
+
 /* Photon from the box's inside or its face; its kerma counts at each tentative collision. */
 static void follow_photon(const struct world *world, struct lane *lane, float position[3], float direction[3],
                           float energy_mev, float weight, struct random *random)
@@ -88,11 +98,9 @@ static void follow_photon(const struct world *world, struct lane *lane, float po
     for (;;) {
         int bin = photon_bin(energy_mev);
         uint64_t bits = random_bits(random);
-        float highest = world->photon_highest[bin], step = -logf(random_high(bits)) / highest;
-        for (int i = 0; i < 3; i++)
-            position[i] += direction[i] * step;
+        float highest = world->photon_highest[bin];
         ptrdiff_t cell;
-        int material = locate(world, lane, position, &cell);
+        int material = fly(world, lane, position, direction, highest, bits, &cell);
         if (material < 0) {
             lane->balance.photon_leaked_mev += (double)(weight * energy_mev);
             return;
@@ -197,11 +205,9 @@ void walk_neutron(const struct world *world, struct lane *lane, const struct par
     for (;;) {
         int bin = neutron_bin(energy_ev);
         uint64_t bits = random_bits(random);
-        float highest = world->neutron_highest[bin], step = -logf(random_high(bits)) / highest;
-        for (int i = 0; i < 3; i++)
-            position[i] += direction[i] * step;
+        float highest = world->neutron_highest[bin];
         ptrdiff_t cell;
-        int material = locate(world, lane, position, &cell);
+        int material = fly(world, lane, position, direction, highest, bits, &cell);
         if (material < 0) {
             lane->balance.leaked += (double)weight;
             return;

@@ -250,7 +250,7 @@ static bool make_list(struct phase_space *list, const struct words *words, const
     size_t n = words->n_histories < LIST_NEUTRONS ? (size_t)words->n_histories : LIST_NEUTRONS;
     if (beam->file.particles.path[0])
         return transport_list_of_particles(list, &beam->file, &beam->particles, n, LIST_PHOTONS, words->seed, err);
-    return phase_space_of_source(list, &beam->file.source, n, LIST_PHOTONS, words->seed, n_threads, err);
+    return phase_space_of_source(list, &beam->file.source, n, LIST_PHOTONS, words->seed, n_threads, NULL, err);
 }
 
 static bool simulate(const struct words *words, struct plan *plan, const struct beam_read *read,

@@ -70,7 +70,7 @@ int main(void)
     source.neutrons =
         (struct beam_spectrum){ 3, { 2e6, 1e4, .5, 1e-3 }, { .01, .89, .10 }, { { 1 }, { 1 }, { 1 } }, 6e11, true };
     struct phase_space beam;
-    if (!phase_space_of_source(&beam, &source, N_LIST, 0, 1, 2, &err))
+    if (!phase_space_of_source(&beam, &source, N_LIST, 0, 1, 2, NULL, &err))
         die(&err);
     struct transport_input input = { .grid = &grid,
                                      .voxels = voxels,

@@ -85,8 +85,14 @@ static void brain_absorbs_what_its_elements_absorb(void **state)
     brain.boron_ppm = 30;
     double without = medium.absorption_2200_cm;
     medium_init(&medium, &brain);
-    assert_near(medium.absorption_2200_cm - without, 30e-6 * 1.04 / 10.0129 * .602214 * 3837, 1e-3);
-    assert_near((double)medium.electrons, 1.04 * .9946, .002);
+    assert_near(medium.absorption_2200_cm - without, 30e-6 * 1.04 / 10.0129 * .602214 * 3835, 1e-3);
+    /* 0.55238 mol of electrons in a gram (.107 / 1.008 + .145 x 6 / 12.011 + ...), 10 / 18.0153 in water's */
+    assert_near((double)medium.electrons, 1.04 * .55238 * 1.80153, 1e-4);
+    static struct particle_tables tables;
+    particle_tables_init(&tables);
+    double mev = photon_bin_mev(photon_bin(1.F));
+    assert_near((double)tables.photon_gy_cm2[photon_bin(1.F)],
+                photon_absorption_cm2_g(mev) * .55238 * 1.80153 * mev * 1.602177e-10, 1e-4);
 }
 
 /* The kerma of fast neutrons in brain: 1.1e-12 Gy cm2 at 11 keV, 6.7e-12 at 98 keV, 2.5e-11 at 1 MeV (ICRU 46 brain,
@@ -178,13 +184,22 @@ static void a_material_beyond_its_limits_is_refused_by_name(void **state)
     bad = brain;
     bad.weight[ELEMENT_C] = .5;
     assert_false(material_check(&bad, &err));
-    assert_non_null(strstr(err.text, "add up to 1.355"));
+    assert_string_equal(err.text, "material brain: weight fractions add up to 1.355, 0.98 to 1.02 expected");
+    bad = brain;
+    bad.weight[ELEMENT_O] = .712 - .03;
+    assert_false(material_check(&bad, &err));
+    assert_string_equal(err.text, "material brain: weight fractions add up to 0.97, 0.98 to 1.02 expected");
+    memset(bad.weight, 0, sizeof bad.weight);
+    assert_false(material_check(&bad, &err));
+    bad.boron_ppm = 1e5;
+    assert_true(material_check(&bad, &err)); /* boron alone */
     bad = brain;
     bad.boron_ppm = NAN;
     assert_false(material_check(&bad, &err));
     bad = brain;
     bad.weight[ELEMENT_H] = -.1;
     assert_false(material_check(&bad, &err));
+    assert_string_equal(err.text, "material brain: weight fraction -0.1 of H, 0 to 1 expected");
 }
 
 int main(void)

@@ -63,7 +63,7 @@ static void read_source(struct phase_space *beam, size_t n_list)
     assert_true(sera_source_parse(bytes, size, "FIR_SHRT_12.source", &source, &err));
     free(bytes);
     source.delimiter = (struct beam_delimiter){ 5.052, 6, 9, 13.5 }; /* beam.json */
-    assert_true(phase_space_of_source(beam, &source, n_list, 32000, 21, parallel_cores(), &err));
+    assert_true(phase_space_of_source(beam, &source, n_list, 32000, 21, parallel_cores(), NULL, &err));
 }
 
 /* seraMC's head1 again: pose and materials of its README and beam.json. */
@@ -258,7 +258,7 @@ static void simulate_made_head(const struct beam_spectrum *neutrons, double ppm,
     struct beam_source source = { .name = "made", .n_cuts = 1, .radius_cm = 5, .to_aperture_cm = .01 };
     source.neutrons = *neutrons;
     struct phase_space beam;
-    assert_true(phase_space_of_source(&beam, &source, n, 0, 5, parallel_cores(), &err));
+    assert_true(phase_space_of_source(&beam, &source, n, 0, 5, parallel_cores(), NULL, &err));
     run(&(struct transport_input){ .grid = &head,
                                    .voxels = voxels,
                                    .materials = materials,
