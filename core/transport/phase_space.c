@@ -54,7 +54,7 @@ static void prepare(struct drawing *drawing)
     }
 }
 
-/* Of a current of Maxwell's spectrum, E exp(-E / 0.0253 eV), within bounds. */
+/* Energy in a current of Maxwell's spectrum, E exp(-E / 0.0253 eV), within bounds. */
 static double draw_slow_ev(double low, double high, struct random *random)
 {
     for (;;) {

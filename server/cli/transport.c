@@ -1,5 +1,4 @@
 /* `beamroom transport`: computes the dose of a beam in a plan's regions. */
-#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -22,6 +21,7 @@ struct words {
     bool has_entry, has_target, is_sera_cells;
     struct vec3 entry_lps_mm, target_lps_mm;
     uint64_t n_histories, seed;
+    double cell_mm;           /* 0: not said */
     double neutrons_per_unit; /* of a file of particles; 0: not given */
 };
 struct beam_read {
@@ -45,8 +45,8 @@ static void print_help(void)
         "  --histories N        neutrons that are followed, 16 to 1e11 (default 1000000); the error falls with their root\n"
         "  --seed N             of the random numbers (default 1); equal input gives equal files\n"
         "  --mode full          every neutron is followed to its end; there is no other mode yet\n"
-        "  --sera-cells         cells of the plan's first dose, tallied whole, air included, as seraMC does\n"
-        "                       (default: cells of 5 mm, in what is not air)\n"
+        "  --cells MM           side of the cells, 1 to 50 (default 5); what is not air counts\n"
+        "  --sera-cells         instead of them those of the plan's first dose, tallied whole, air included, as seraMC does\n"
         "  --help               this text\n",
         transport_library_names());
 }
@@ -74,6 +74,13 @@ static bool parse_count(const char *text, double low, double high, uint64_t *cou
         return false;
     *count = (uint64_t)value;
     return true;
+}
+
+static bool parse_mm(const char *text, double low, double high, double *mm)
+{
+    char *end;
+    *mm = strtod(text, &end);
+    return end != text && !*end && *mm >= low && *mm <= high;
 }
 
 /* 0, or the exit status after a usage error. */
@@ -104,6 +111,10 @@ static int take_option(struct words *words, int option, const char *word)
         return parse_count(optarg, 16, 1e11, &words->n_histories)
                    ? 0
                    : command_usage_error("transport", "--histories '%s' is not a whole number from 16 to 1e11", optarg);
+    case 'w':
+        return parse_mm(optarg, 1, 50, &words->cell_mm)
+                   ? 0
+                   : command_usage_error("transport", "--cells '%s' is not a number from 1 to 50, mm", optarg);
     case 's':
         return parse_count(optarg, 0, 9e15, &words->seed)
                    ? 0
@@ -118,13 +129,17 @@ static int take_option(struct words *words, int option, const char *word)
 
 static int take_words(struct words *words, int argc, char **argv)
 {
-    static const struct option long_options[] = {
-        { "beam", required_argument, NULL, 'b' },   { "entry", required_argument, NULL, 'e' },
-        { "target", required_argument, NULL, 't' }, { "histories", required_argument, NULL, 'n' },
-        { "seed", required_argument, NULL, 's' },   { "neutrons-per-unit", required_argument, NULL, 'p' },
-        { "mode", required_argument, NULL, 'm' },   { "sera-cells", no_argument, NULL, 'c' },
-        { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 }
-    };
+    static const struct option long_options[] = { { "beam", required_argument, NULL, 'b' },
+                                                  { "entry", required_argument, NULL, 'e' },
+                                                  { "target", required_argument, NULL, 't' },
+                                                  { "histories", required_argument, NULL, 'n' },
+                                                  { "seed", required_argument, NULL, 's' },
+                                                  { "neutrons-per-unit", required_argument, NULL, 'p' },
+                                                  { "mode", required_argument, NULL, 'm' },
+                                                  { "sera-cells", no_argument, NULL, 'c' },
+                                                  { "cells", required_argument, NULL, 'w' },
+                                                  { "help", no_argument, NULL, 'h' },
+                                                  { NULL, 0, NULL, 0 } };
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
         if (option == 'h') {
@@ -139,6 +154,8 @@ static int take_words(struct words *words, int argc, char **argv)
         return command_usage_error("transport", "one folder and -o OUT are needed, %d words are given", argc - optind);
     if (words->has_entry != words->has_target)
         return command_usage_error("transport", "--entry and --target belong together");
+    if (words->cell_mm > 0 && words->is_sera_cells)
+        return command_usage_error("transport", "--cells and --sera-cells are of different cells");
     words->plan = argv[optind];
     return 0;
 }
@@ -276,7 +293,7 @@ static bool simulate(const struct words *words, struct plan *plan, const struct 
                                      .n_histories = words->n_histories,
                                      .seed = words->seed,
                                      .cells = cells,
-                                     .cell_mm = 5,
+                                     .cell_mm = words->cell_mm > 0 ? words->cell_mm : 5,
                                      .is_whole_cells = words->is_sera_cells,
                                      .n_threads = n_threads };
     bool is_done = transport_run(&input, &result, err);
@@ -290,8 +307,10 @@ static bool simulate(const struct words *words, struct plan *plan, const struct 
 }
 
 /* Before hours of work, and not after. */
-static bool is_free(const char *out, struct error *err)
+static bool is_free(const char *out, const struct plan *plan, struct error *err)
 {
+    if (plan->n_doses == PLAN_MAX_DOSES)
+        return error_set(err, ERROR_LIMIT, "the plan has %d doses already, at most %d", PLAN_MAX_DOSES, PLAN_MAX_DOSES);
     struct folder folder;
     char **names;
     size_t n_names;
@@ -312,7 +331,7 @@ static bool run(const struct words *words, struct plan *plan, struct beam_read *
 {
     struct transport_scene scene;
     struct beam_file *file = &beam->file;
-    if (!is_free(words->out, err) || !read_beam(words, beam, err) || !take_strength(words, file, err) ||
+    if (!is_free(words->out, plan, err) || !read_beam(words, beam, err) || !take_strength(words, file, err) ||
         !take_pose(words, plan, file, err))
         return false;
     fputs("beam: ", stdout);

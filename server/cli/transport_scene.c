@@ -1,5 +1,5 @@
 /* Materials in the voxels of a plan; a result as a dose of the plan. */
-#include <math.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -252,6 +252,21 @@ static void make_id(const struct plan *plan, char id[64])
     }
 }
 
+/* A long note is cut, and not what is said of the dose. */
+static void add_note(struct plan *plan, const char *id, uint64_t n_histories, uint64_t seed)
+{
+    char note[256];
+    size_t added = (size_t)snprintf(note, sizeof note,
+                                    "Dose '%s': beamroom %s, transport model %s, %" PRIu64 " histories, seed %" PRIu64
+                                    "; approximate, not for treatment.",
+                                    id, BEAMROOM_VERSION, TRANSPORT_MODEL, n_histories, seed);
+    size_t used = strlen(plan->note), room = sizeof plan->note - added - 5;
+    bool is_cut = used > room;
+    for (used = is_cut ? room : used; is_cut && used > 0 && ((unsigned char)plan->note[used] & 0xc0) == 0x80;)
+        used--; /* not within a letter */
+    snprintf(plan->note + used, sizeof plan->note - used, "%s%s%s", is_cut ? "..." : "", used > 0 ? " " : "", note);
+}
+
 bool transport_add_dose(struct plan *plan, struct transport_result *result, const char *per, uint64_t seed,
                         struct error *err)
 {
@@ -287,10 +302,6 @@ bool transport_add_dose(struct plan *plan, struct transport_result *result, cons
     origin.path[0] = origin.set_label[0] = '\0';
     plan->dose_origins[plan->n_doses] = origin;
     plan->n_doses++;
-    size_t used = strlen(plan->note);
-    snprintf(plan->note + used, sizeof plan->note - used,
-             "%sDose '%s': beamroom %s, transport model %s, %llu histories, seed %llu; approximate, not for treatment.",
-             used ? " " : "", dose->id, BEAMROOM_VERSION, TRANSPORT_MODEL, (unsigned long long)result->n_histories,
-             (unsigned long long)seed);
+    add_note(plan, dose->id, result->n_histories, seed);
     return true;
 }

@@ -63,6 +63,8 @@ describe('beamroom', () => {
       [['transport', plan, '-o', 'a', '--entry', '1,2'], /--entry '1,2' is not of the form X,Y,Z/],
       [['transport', plan, '-o', 'a', '--histories', '15'], /--histories '15' is not a whole number from 16/],
       [['transport', plan, '-o', 'a', '--histories', '1e12'], /--histories '1e12'/],
+      [['transport', plan, '-o', 'a', '--cells', '0.5'], /--cells '0\.5' is not a number from 1 to 50, mm/],
+      [['transport', plan, '-o', 'a', '--cells', '5', '--sera-cells'], /--cells and --sera-cells are of different cells/],
       [['transport', plan, '-o', 'a', '--mode', 'hybrid'], /--mode is "hybrid", expected full/],
       [['render', plan], /-o OUT/],
       [['render', plan, '-o', 'x.gif'], /does not end in/],

@@ -1,7 +1,7 @@
 // `beamroom transport`: what it uses of a plan and a beam file, what it writes, its refusals.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -140,6 +140,47 @@ describe('beamroom transport', () => {
     );
     assert.match(run('refused', '--beam', 'goorley', '--neutrons-per-unit', '1e9').stderr, /is for files of particles/);
     assert.ok(!existsSync(join(folder, 'refused')));
+  });
+
+  it("gives the dose in the plan's unit, on cells of the size asked for, and notes it in whatever note there is", () => {
+    const simulate = (name, unit, note, ...more) => {
+      const dir = join(folder, `in ${name}`);
+      cpSync(plan, dir, { recursive: true });
+      const text = JSON.parse(readFileSync(join(dir, 'plan.json'), 'utf8'));
+      text.doses[0].unit = unit;
+      writeFileSync(join(dir, 'plan.json'), JSON.stringify({ ...text, note }));
+      const { status, stderr } = beamroom('transport', dir, '-o', `${dir} out`, '--histories', '1000', ...more);
+      assert.equal(status, 0, stderr);
+      /** Voxels of a file of NIfTI-2, after 544 bytes. */
+      const values = (quantity) => {
+        const bytes = gunzipSync(readFileSync(join(`${dir} out`, 'doses', `simulated-here_${quantity}.nii.gz`)));
+        return { bytes, floats: Array.from({ length: (bytes.length - 544) / 4 }, (_, i) => bytes.readFloatLE(544 + 4 * i)) };
+      };
+      return { written: JSON.parse(readFileSync(join(`${dir} out`, 'plan.json'), 'utf8')), values };
+    };
+    const long = 'ä'.repeat(255);
+    const [gy, cgy] = [simulate('Gy', 'Gy', 'Short.'), simulate('cGy', 'cGy', long)];
+    const said = "Dose 'simulated-here': beamroom ";
+    assert.ok(gy.written.note.startsWith(`Short. ${said}`), gy.written.note);
+    assert.match(cgy.written.note, /^ä+\.\.\. Dose 'simulated-here': .*; approximate, not for treatment\.$/);
+    assert.deepEqual(
+      [gy, cgy].map(({ written }) => written.doses.at(-1).unit),
+      ['Gy', 'cGy'],
+    );
+    for (const quantity of ['boron', 'gamma', 'boron-error']) {
+      const [one, hundred] = [gy, cgy].map(({ values }) => values(quantity).floats);
+      assert.ok(one.some((value) => value > 0));
+      assert.ok(
+        one.every((value, i) => Math.abs(hundred[i] - 100 * value) <= 1e-6 * hundred[i]),
+        quantity,
+      );
+    }
+    assert.ok(gy.values('thermal-fluence').bytes.equals(cgy.values('thermal-fluence').bytes), 'a fluence has no gray');
+    const coarse = simulate('coarse', 'Gy', '', '--cells', '10').values('boron');
+    assert.deepEqual(
+      [112, 120, 128].map((at) => Math.round(1e6 * coarse.bytes.readDoubleLE(at)) / 1e6),
+      [10, 10, 10],
+    );
   });
 
   it('refuses a beam or a region that is not there by its name', () => {
