@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/annotate/font.h"
+#include "core/annotate/label_places.h"
 #include "core/base/mem.h"
 #include "core/render/visible/paint.h"
 
@@ -101,23 +102,29 @@ static bool coverage_create(struct coverage *coverage, int width_px, int height_
     return coverage->pixels != NULL;
 }
 
+/* The words of a line: they begin at left, and the middle of their capitals is at y. */
+static bool paint_line_of_text(const struct canvas *canvas, struct font *font, const struct font_line *line, int left,
+                               int y, struct error *err)
+{
+    struct coverage coverage = { 0 };
+    int top = y - font_size_px(font) / 2 - HALO_PX,
+        baseline = y + (font_size_px(font) * 73 / 100 + 1) / 2; /* capitals are 0.73 of the font's size high */
+    bool is_drawn =
+        coverage_create(&coverage, line->width_px + 2 * HALO_PX, font_size_px(font) * 4 / 3 + 2 * HALO_PX, err) &&
+        font_draw(font, line, HALO_PX, baseline - top, &coverage, err);
+    if (is_drawn)
+        paint_with_halo(canvas, &coverage, left - HALO_PX, top);
+    free(coverage.pixels);
+    return is_drawn;
+}
+
 /* A word on the picture: x + align * width / 2 is its middle, and the middle of its capitals is at y. */
 static bool paint_word(const struct canvas *canvas, struct font *font, const char *word, int x, int align, int y,
                        struct error *err)
 {
     struct font_line line;
-    struct coverage coverage = { 0 };
-    if (!font_lay_out(font, word, canvas->width_px, &line, err))
-        return false;
-    int left = x + (align - 1) * line.width_px / 2, top = y - font_size_px(font) / 2 - HALO_PX,
-        baseline = y + (font_size_px(font) * 73 / 100 + 1) / 2; /* capitals are 0.73 of the font's size high */
-    bool is_drawn =
-        coverage_create(&coverage, line.width_px + 2 * HALO_PX, font_size_px(font) * 4 / 3 + 2 * HALO_PX, err) &&
-        font_draw(font, &line, HALO_PX, baseline - top, &coverage, err);
-    if (is_drawn)
-        paint_with_halo(canvas, &coverage, left - HALO_PX, top);
-    free(coverage.pixels);
-    return is_drawn;
+    return font_lay_out(font, word, canvas->width_px, &line, err) &&
+           paint_line_of_text(canvas, font, &line, x + (align - 1) * line.width_px / 2, y, err);
 }
 
 static bool paint_letters(const struct canvas *canvas, struct font *font, const struct edge_letters *letters,
@@ -352,19 +359,138 @@ static bool paint_lines(const struct canvas *canvas, const struct annotations *a
     return is_done;
 }
 
-static bool paint_labels(const struct canvas *canvas, struct font *font, const struct annotations *annotations,
-                         struct error *err)
+enum { NARROW_EM = 12, LETTERS = 4 }; /* longer words give way in the middle where there is no free place for them */
+static const uint32_t joint_rgb = 0xffd84d;
+
+/* The boxes of the letters at the edges and of the scale bar. */
+static void take_fixed(const struct canvas *canvas, struct font *font, const struct annotations *annotations,
+                       struct label_placing *placing)
+{
+    const int side = 2 * font_size_px(font), width = canvas->width_px, height = canvas->height_px;
+    const struct scale_bar bar = annotate_scale_bar(width, height, annotations->pixels_per_mm);
+    const struct label_box boxes[LETTERS + 1] = { { 0, (height - side) / 2, side, side },
+                                                  { width - side, (height - side) / 2, side, side },
+                                                  { (width - side) / 2, 0, side, side },
+                                                  { (width - side) / 2, height - side, side, side },
+                                                  { 0, height - side, bar.x_px + bar.length_px + 3 * side, side } };
+    placing->n_fixed = annotations->pixels_per_mm > 0 ? LETTERS + 1 : LETTERS;
+    memcpy(placing->taken, boxes, placing->n_fixed * sizeof boxes[0]);
+    placing->n_taken = placing->n_fixed;
+}
+
+/* Painting labels: what has its place, and the lines from words to their points. */
+struct labelling {
+    const struct canvas *canvas;
+    struct font *font;
+    struct label_placing placing;
+    struct annotations joints; /* lines alone */
+    struct label_box *boxes;   /* [n_labels]; width 0: it is not in the picture */
+};
+
+/* Letters of axes and numbers of a ruler stay where they are. */
+static bool place_centred(struct labelling *labelling, const struct annotation_label *label, int x, int y,
+                          struct label_box *box, struct error *err)
+{
+    struct font_line line;
+    const int size = font_size_px(labelling->font);
+    if (!font_lay_out(labelling->font, label->text, labelling->canvas->width_px, &line, err))
+        return false;
+    *box = (struct label_box){ x - line.width_px / 2 - labelling->placing.rim_px, y - labelling->placing.above_px,
+                               line.width_px + 2 * labelling->placing.rim_px, size * 4 / 3 + 2 * HALO_PX };
+    labelling->placing.taken[labelling->placing.n_taken++] = *box;
+    return true;
+}
+
+static bool place_beside(struct labelling *labelling, const struct annotation_label *label, int x, int y,
+                         struct label_box *box, struct error *err)
+{
+    struct font_line line;
+    const int size = font_size_px(labelling->font), most[2] = { labelling->canvas->width_px, NARROW_EM * size };
+    bool is_found = false;
+    for (int i = 0; !is_found && i < 2; i++) {
+        if (!font_lay_out(labelling->font, label->text, most[i], &line, err))
+            return false;
+        *box = (struct label_box){ .width = line.width_px + 2 * labelling->placing.rim_px,
+                                   .height = size * 4 / 3 + 2 * HALO_PX };
+        is_found = label_place(&labelling->placing, x, y, box);
+    }
+    struct annotation_line joint = { .rgb = joint_rgb };
+    int end[2];
+    if (is_found && label_is_far(&labelling->placing, x, y, box, end)) {
+        joint.from[0] = (double)x / labelling->canvas->width_px;
+        joint.from[1] = (double)y / labelling->canvas->height_px;
+        joint.to[0] = (double)end[0] / labelling->canvas->width_px;
+        joint.to[1] = (double)end[1] / labelling->canvas->height_px;
+        labelling->joints.lines[labelling->joints.n_lines++] = joint;
+    }
+    return true;
+}
+
+/* Those that stay come first, so that the others keep away from them. */
+static bool place_labels(struct labelling *labelling, const struct annotations *annotations, struct error *err)
+{
+    const struct canvas *canvas = labelling->canvas;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t i = 0; i < annotations->n_labels; i++) {
+            const struct annotation_label *label = &annotations->labels[i];
+            const double x = label->at[0] * canvas->width_px, y = label->at[1] * canvas->height_px;
+            if (label->is_centred != (pass == 0) ||
+                !(x >= 0 && x <= canvas->width_px && y >= 0 && y <= canvas->height_px))
+                continue;
+            if (!(pass == 0 ? place_centred : place_beside)(labelling, label, (int)x, (int)y, &labelling->boxes[i],
+                                                            err))
+                return false;
+        }
+    return true;
+}
+
+static bool paint_placed(const struct labelling *labelling, const struct annotations *annotations, struct error *err)
 {
     for (size_t i = 0; i < annotations->n_labels; i++) {
-        const struct annotation_label *label = &annotations->labels[i];
-        double x = label->at[0] * canvas->width_px, y = label->at[1] * canvas->height_px;
-        int aside = label->is_centred ? 0 : font_size_px(font) * 2 / 3;
-        if (!(x >= 0 && x <= canvas->width_px && y >= 0 && y <= canvas->height_px))
-            continue;
-        if (!paint_word(canvas, font, label->text, (int)x + aside, !label->is_centred, (int)y - aside, err))
+        const struct label_box *box = &labelling->boxes[i];
+        struct font_line line;
+        if (box->width > 0 &&
+            (!font_lay_out(labelling->font, annotations->labels[i].text, box->width - 2 * labelling->placing.rim_px,
+                           &line, err) ||
+             !paint_line_of_text(labelling->canvas, labelling->font, &line, box->left + labelling->placing.rim_px,
+                                 box->top + labelling->placing.above_px, err)))
             return false;
     }
     return true;
+}
+
+/* Labels laid apart: words that would cover others stand at another corner of their point, or where there is room, with
+ * a line to it. */
+static bool paint_labels(const struct canvas *canvas, struct font *font, const struct annotations *annotations,
+                         struct error *err)
+{
+    const size_t n = annotations->n_labels;
+    const int size = font_size_px(font);
+    struct labelling labelling = { .canvas = canvas,
+                                   .font = font,
+                                   .placing = { .width_px = canvas->width_px,
+                                                .height_px = canvas->height_px,
+                                                .aside_px = size * 2 / 3,
+                                                .rim_px = HALO_PX + size / 4,
+                                                .above_px = size / 2 + HALO_PX,
+                                                .step_px = size } };
+    if (!n)
+        return true;
+    labelling.boxes = mem_array(n, sizeof *labelling.boxes, UINT64_MAX, err);
+    labelling.placing.taken =
+        labelling.boxes ? mem_array(n + LETTERS + 1, sizeof *labelling.boxes, UINT64_MAX, err) : NULL;
+    labelling.joints.lines =
+        labelling.placing.taken ? mem_array(n, sizeof *labelling.joints.lines, UINT64_MAX, err) : NULL;
+    bool is_done = labelling.joints.lines != NULL;
+    if (is_done) {
+        take_fixed(canvas, font, annotations, &labelling.placing);
+        is_done = place_labels(&labelling, annotations, err) && paint_lines(canvas, &labelling.joints, err) &&
+                  paint_placed(&labelling, annotations, err);
+    }
+    free(labelling.boxes);
+    free(labelling.placing.taken);
+    free(labelling.joints.lines);
+    return is_done;
 }
 
 static bool paint_on_picture(const struct canvas *canvas, struct font *font, const struct annotations *annotations,

@@ -1,5 +1,6 @@
 /* Measures and patient axes on annotated pictures: where they are, and what they say. */
 #include "core/annotate/describe.h"
+#include "core/annotate/label_places.h"
 #include "core/annotate/marks.h"
 #include "core/scene/axes.h"
 #include "tests/check.h"
@@ -247,6 +248,80 @@ static void lines_are_painted_on_the_picture_and_nowhere_else(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static size_t white_pixels(const struct annotations *annotations)
+{
+    struct error err = { 0 };
+    struct image *black = image_create(1600, 1200, &err);
+    for (size_t i = 0; i < (size_t)1600 * 1200; i++)
+        black->rgba[4 * i + 3] = 255;
+    struct image *image = annotate_image(black, annotations, &err);
+    size_t n = 0;
+    for (size_t i = 0; i < (size_t)1600 * 1200; i++)
+        n += image->rgba[4 * i] == 255 && image->rgba[4 * i + 1] == 255 && image->rgba[4 * i + 2] == 255;
+    image_destroy(image);
+    image_destroy(black);
+    return n;
+}
+
+/* Words that cover others leave fewer white pixels than each of them has alone. */
+static void the_words_of_thirty_measures_cover_none_of_each_other(void **state)
+{
+    (void)state;
+    struct annotation_label labels[30] = { 0 };
+    struct annotations all = { .labels = labels, .n_labels = 30, .has_no_caption = true };
+    size_t sum = 0, usual = 0;
+    for (int i = 0; i < 30; i++) { /* within 80 x 60 of 1600 x 1200 pixels, in the upper right */
+        labels[i].at[0] = 0.9 + 0.05 * (i % 6) / 5;
+        labels[i].at[1] = 0.1 + 0.05 * (i / 6) / 4.0;
+        (void)snprintf(labels[i].text, sizeof labels[i].text, "Margin %d  %d.%d mm", i + 1, 10 + i, i % 10);
+    }
+    for (int i = 0; i < 30; i++) {
+        const struct annotations one = { .labels = &labels[i], .n_labels = 1, .has_no_caption = true };
+        sum += white_pixels(&one);
+    }
+    assert_true(sum > 30 * 500);
+    assert_int_equal(white_pixels(&all), sum);
+    labels[0].at[0] = 0.1; /* one alone, and again with another far away: it stays */
+    all.n_labels = 1;
+    usual = white_pixels(&all);
+    all.n_labels = 2;
+    assert_true(white_pixels(&all) > usual);
+}
+
+static void words_beside_a_point_take_its_corners_then_the_nearest_free_place(void **state)
+{
+    (void)state;
+    struct label_box taken[8] = { { 0, 0, 100, 20 } }, box = { .width = 40, .height = 10 };
+    struct label_placing placing = { .width_px = 200,
+                                     .height_px = 100,
+                                     .aside_px = 5,
+                                     .above_px = 5,
+                                     .step_px = 10,
+                                     .taken = taken,
+                                     .n_taken = 1,
+                                     .n_fixed = 1 };
+    static const int corners[4][2] = { { 105, 40 }, { 55, 40 }, { 105, 50 }, { 55, 50 } };
+    int end[2];
+    for (int i = 0; i < 4; i++) {
+        assert_true(label_place(&placing, 100, 50, &box));
+        assert_int_equal(box.left, corners[i][0]);
+        assert_int_equal(box.top, corners[i][1]);
+        assert_false(label_is_far(&placing, 100, 50, &box, end));
+    }
+    assert_true(label_place(&placing, 100, 50, &box)); /* above or below the four, beside no taken one */
+    assert_true(box.top + 10 <= 40 || box.top >= 60);
+    assert_true(label_is_far(&placing, 100, 50, &box, end));
+    assert_int_equal(end[1], box.top < 50 ? box.top + 10 : box.top);
+    placing.n_taken = 1; /* what is fixed keeps words away from every place but the usual one */
+    assert_true(label_place(&placing, 20, 15, &box));
+    assert_int_equal(box.top, 5);
+    assert_true(label_place(&placing, 20, 15, &box));
+    assert_true(box.top >= 20);
+    box.width = 400; /* wider than the picture: there is no place */
+    assert_false(label_place(&placing, 20, 15, &box));
+    assert_int_equal(placing.n_taken, 3);
+}
+
 static void the_axes_stand_a_tenth_out_of_the_plans_box_on_each_side(void **state)
 {
     (void)state;
@@ -335,6 +410,8 @@ int main(void)
         cmocka_unit_test(the_crosshair_is_drawn_on_a_slice_from_edge_to_edge_free_around_its_middle),
         cmocka_unit_test(a_crosshair_beside_the_picture_leaves_the_lines_that_cross_it),
         cmocka_unit_test(lines_are_painted_on_the_picture_and_nowhere_else),
+        cmocka_unit_test(the_words_of_thirty_measures_cover_none_of_each_other),
+        cmocka_unit_test(words_beside_a_point_take_its_corners_then_the_nearest_free_place),
         cmocka_unit_test(the_axes_stand_a_tenth_out_of_the_plans_box_on_each_side),
         cmocka_unit_test(letters_stand_at_the_ends_of_the_axes_in_3d_alone),
         cmocka_unit_test(letters_stand_where_the_form_of_the_axes_has_its_ends),
