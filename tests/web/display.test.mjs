@@ -225,6 +225,7 @@ describe('the page of a wall', { skip: missing && `${missing} is missing` }, () 
       return px;
     });
     assert.ok(labelPx >= 15, `${labelPx}`);
+    await wall.locator('.wall-column .wall-region', { hasText: /^tumour$/ }).waitFor(); // the innermost region at the crosshair
     const column = await text(wall, '.wall-column');
     for (const words of [
       'Weighted total',

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { isDeepStrictEqual } from 'node:util';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { until } from '../api/daemon.mjs';
+import { call, until } from '../api/daemon.mjs';
 import { readPng } from '../api/png.mjs';
 import { axe } from './axe.mjs';
 import { overPictures } from './anatomy.mjs';
@@ -253,6 +253,67 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
+  it('a wall explains the colours of images, and those of PET in greys too, with their domain and unit', async () => {
+    const room = await world.newRoom(plan);
+    const wall = await world.newPage(`display/${room}`, { viewport: { width: 1920, height: 1080 } });
+    await wall.locator('.wall-column', { hasText: 'At the crosshair' }).waitFor();
+    const patched = async (image) => {
+      const { status, text } = await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image }, { 'If-Match': '*' });
+      assert.equal(status, 200, text);
+    };
+    const scales = () =>
+      wall.evaluate(() =>
+        [...document.querySelectorAll('.wall-image')].map((section) => ({
+          words: section.innerText.split(/\n+/),
+          colours: getComputedStyle(section.querySelector('.wall-scale')).backgroundImage.match(/rgb\([^)]*\)/g),
+        })),
+      );
+    const shows = async (wanted) => {
+      const found = await until(
+        scales,
+        (all) =>
+          isDeepStrictEqual(
+            all.map(({ words }) => words),
+            wanted,
+          ),
+        20000,
+      );
+      assert.deepEqual(
+        found.map(({ words }) => words),
+        wanted,
+      );
+      return found.map(({ colours }) => [colours[0], colours.at(-1)]);
+    };
+    assert.deepEqual(await scales(), [], 'a CT in greys has its window in the heads of the panes');
+    await patched({ color_map: 'viridis' });
+    const ofCt = ['Image CT', 'HU', '−160', '240']; // 40 ± 200
+    assert.deepEqual(await shows([ofCt]), [['rgb(68, 1, 84)', 'rgb(253, 231, 37)']]); // the ends of matplotlib's viridis
+    await patched({ low_values: 'white' });
+    const turned = ['rgb(253, 231, 37)', 'rgb(68, 1, 84)'];
+    assert.deepEqual(
+      await until(
+        () => shows([ofCt]),
+        ([ends]) => isDeepStrictEqual(ends, turned),
+      ),
+      [turned],
+    );
+    await patched({ low_values: 'black', blend: { id: 'pet', opacity: 0.3 } });
+    await shows([ofCt, ['Image PET 30 %', 'Bq/ml', '0', '1000']]);
+    await wall.waitForFunction(() =>
+      globalThis.wall.room.views.slice(1, 4).every(({ painted, behindSince }) => painted.value?.is_still && !behindSince.value),
+    );
+    await shoot(wall, 'wall-image');
+    await patched({ id: 'pet', color_map: 'grey', blend: { id: '' }, window: windows.pet });
+    assert.deepEqual(await shows([['Image PET', 'Bq/ml', '0', '1000']]), [['rgb(0, 0, 0)', 'rgb(255, 255, 255)']]);
+    const sides = await wall.evaluate(() => {
+      const { scrollHeight, clientHeight, scrollWidth, clientWidth } = document.querySelector('.wall-column');
+      return [scrollHeight <= clientHeight, scrollWidth <= clientWidth];
+    });
+    assert.deepEqual(sides, [true, true], 'nothing of the column is cut');
+    assert.deepEqual(await axe(wall), []);
+    await wall.context().close();
+  });
+
   // ---- the volume ------------------------------------------------------------------------------------------------------------
 
   const points = [
@@ -280,7 +341,6 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     const opened = await open(options, { isMadeUp: true });
     const { page, room, image } = opened;
     await toRow(page);
-    const { call } = await import('../api/daemon.mjs');
     await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image: { volume: { points } } }, { 'If-Match': '*' });
     await page.locator('.image-plot [role="option"]').nth(2).waitFor();
     await page.waitForFunction(() =>

@@ -1,8 +1,9 @@
-// The right column of a wall: the legend of the dose, the colours of a check, the regions that are shown, the value at the crosshair, who is here.
+// The right column of a wall: the legend of the dose, the colours of images, the colours of a check, the regions that are shown, the value at the crosshair, who is here.
 import { html, nothing } from '../../lib/lit-html.js';
 import { legendRows } from '../features/dose/legend_rows.js';
 import { valueWords } from '../features/dose/dose_probe.js';
 import { ofFits } from '../features/fits/feature.js';
+import { imageScales } from '../features/image/image_legend.js';
 import { ownRegions } from '../room/identity.js';
 import { isInSpace } from '../room/kinds.js';
 import { crosshair } from '../room/plan.js';
@@ -44,6 +45,18 @@ function legend(world) {
   return html`${mark === nothing ? nothing : html`<p class="wall-mark">${mark}</p>`}${rows.map(legendRow)}`;
 }
 
+/** The colours of the image shown and of one blended over it, from the lower end of the window to the upper one. */
+const images = (world) =>
+  imageScales(world).map(
+    ({
+      name,
+      unit,
+      gradient,
+      ends,
+    }) => html`<section class="wall-image"><h2>${say.image({ image: name })}</h2>${unit ? html`<p>${unit}</p>` : nothing}
+    <i class="wall-scale" ${variables({ '--scale': gradient })}></i><p class="wall-ends">${ends.map((end) => html`<span>${end}</span>`)}</p></section>`,
+  );
+
 /** The colours of the segmentation check, while a slice shows it. */
 function check({ room }) {
   const isShown = room.scene.value.check.visible && room.plan.value.regions.length > 0;
@@ -69,10 +82,10 @@ function atCrosshair({ room, doses, probed }) {
   const { result, isOld } = doses.here.value;
   const dose = !isOld && doses.isOfScene(result) ? valueWords(result) : '';
   const isValue = dose && Number.isFinite(result.value);
-  const inRegions = (!probed.value.isOld && probed.value.result?.regions) || [];
-  const names = inRegions.map(({ id, region = id }) => room.plan.value.regions.find((other) => other.id === region)?.name).filter(Boolean);
+  const innermost = !probed.value.isOld && probed.value.result?.regions[0];
+  const region = room.plan.value.regions.find(({ id }) => id === innermost)?.name;
   return html`<section><h2>${say.crosshair}</h2><p>${position(crosshair(scene))}</p>
-    ${isValue ? html`<p class="wall-value">${dose}</p>` : dose ? html`<p>${dose}</p>` : nothing}${names.length ? html`<p>${names.join(', ')}</p>` : nothing}</section>`;
+    ${isValue ? html`<p class="wall-value">${dose}</p>` : dose ? html`<p>${dose}</p>` : nothing}${region ? html`<p class="wall-region">${region}</p>` : nothing}</section>`;
 }
 
 /** People of the room, the presenter first; who may not point is counted. */
@@ -91,5 +104,5 @@ function here({ room }) {
 export function wallColumn(world) {
   const { room } = world;
   if (!room.plan.value || !room.scene.value) return nothing;
-  return html`${legend(world)}${check(world)}${regions(world)}${atCrosshair(world)}${here(world)}`;
+  return html`${legend(world)}${images(world)}${check(world)}${regions(world)}${atCrosshair(world)}${here(world)}`;
 }

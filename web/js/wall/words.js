@@ -25,6 +25,7 @@ export const say = sentences('wall', {
   rejectedBy: 'This plan was rejected on {date} by {reviewer}.',
   files: 'The plan’s files changed on the disk at {time}. Shown is what was read before.',
   open: 'This server is open to everybody who reaches it. Anybody sees every plan here, under any name. Nothing can be signed.',
+  image: 'Image {image}',
   regions: 'Regions',
   others: 'and {n} more',
   check: 'Colours of the check',
