@@ -265,12 +265,19 @@ static bool room_can_be_looked_for(struct api *api, const struct call *call, con
     return net_rooms_are_known(api->net, problem);
 }
 
+/* Looks after what goes on without a call. */
+static void look(void *context)
+{
+    api_streams_look(context);
+    api_films_go_on(context);
+}
+
 void api_handle(struct api *api, struct call *call)
 {
     struct problem problem;
     char allowed[64] = "";
     bool is_known = false;
-    net_on_identities(api->net, api_streams_look, api); /* on this thread: api_create is not */
+    net_on_identities(api->net, look, api); /* on this thread: api_create is not */
     call->api = api;
     api_jobs_update(api);
     if (call->early.type != PROBLEM_NONE) {

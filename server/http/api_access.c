@@ -191,20 +191,40 @@ static bool seat_allows(const struct api *api, const struct call *call, enum acc
     return subject.room_role > ACCESS_ROLE_NONE && access_check(NULL, &call->identity, right, &subject);
 }
 
+/* The room is awake, and the caller sees it. */
+static bool room_allows(const struct api *api, const struct call *call, const struct access_route *need,
+                        const struct room *room)
+{
+    struct plan_subject plan;
+    plan_subject_fill(api->rights, net_fleet(api->net), room_plan_id(room), &plan);
+    plan.subject.kind = need->subject;
+    plan.subject.is_closed = true; /* but for those whom it lets in */
+    plan.subject.room_role = role_in(room, call);
+    return access_check(api->rights->access, &call->identity, need->right, &plan.subject);
+}
+
+bool api_access_may_export(const struct api *api, const struct call *call, const char *plan_id, const char *room_id,
+                           struct problem *problem)
+{
+    static const struct access_route need = { .right = ACCESS_EXPORT, .subject = ACCESS_SUBJECT_KIND_ROOM };
+    const struct room *room = room_id[0] ? net_room_find(api->net, room_id) : NULL;
+    const bool sees_room = room_id[0] && api_access_sees_room(api, call, room_id);
+    if (call->identity.source == IDENTITY_MACHINE || api_access_to_plan(api, call, ACCESS_EXPORT, plan_id) ||
+        (room && sees_room && room_allows(api, call, &need, room)))
+        return true;
+    if (sees_room || api_access_to_plan(api, call, ACCESS_LOOK, plan_id))
+        return lacks_right(ACCESS_EXPORT, problem);
+    problem->type = PROBLEM_NOT_FOUND;
+    return false;
+}
+
 static bool check_room(struct api *api, struct call *call, const struct access_route *need)
 {
     struct problem problem;
     const struct room *room = net_room_find(api->net, call->ids[0]);
     if (api_access_sees_room(api, call, call->ids[0])) {
-        struct plan_subject plan;
-        if (!room)
-            return true; /* asked again when it is awake */
-        plan_subject_fill(api->rights, net_fleet(api->net), room_plan_id(room), &plan);
-        plan.subject.kind = need->subject;
-        plan.subject.is_closed = true; /* but for those whom it lets in */
-        plan.subject.room_role = role_in(room, call);
-        return access_check(api->rights->access, &call->identity, need->right, &plan.subject) ||
-               refuse_role(call, need);
+        return !room || /* asked again when it is awake */
+               room_allows(api, call, need, room) || refuse_role(call, need);
     }
     if (call->identity.source == IDENTITY_NOBODY)
         return refuse_nobody(call);

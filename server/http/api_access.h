@@ -24,5 +24,9 @@ NODISCARD bool api_access_makes_room(const struct api *api, const struct call *c
                                      struct problem *problem);
 /* Whether the caller may upload, asked before a byte of an archive is kept. Any thread. */
 NODISCARD bool api_access_may_upload(const struct api *api, const struct call *call, struct problem *problem);
+/* Whether the caller may take away what was made of the plan or, where room_id is not "", of a room on it, as a call to
+ * make it is checked. False with problem: forbidden to who sees the one or the other, else not-found, without words. */
+NODISCARD bool api_access_may_export(const struct api *api, const struct call *call, const char *plan_id,
+                                     const char *room_id, struct problem *problem);
 /* Whether the caller may look at this room, awake or asleep. */
 bool api_access_sees_room(const struct api *api, const struct call *call, const char *room_id);

@@ -7,6 +7,7 @@
 #include "core/base/clock.h"
 #include "server/front/address.h"
 #include "server/http/api_access.h"
+#include "server/http/api_jobs.h"
 
 bool api_is_of_this_machine(const struct api *api, const struct call *call)
 {
@@ -26,16 +27,19 @@ static struct room *room_named(const struct call *call)
 
 static void audit_export(struct call *call)
 {
-    struct net *net = ((struct api *)call->api)->net;
-    static const char rooms[] = "/api/v1/rooms/", plans[] = "/api/v1/plans/";
+    struct api *api = call->api;
+    struct net *net = api->net;
+    static const char rooms[] = "/api/v1/rooms/", plans[] = "/api/v1/plans/", jobs[] = "/api/v1/jobs/";
     if (call->status >= 300)
         return;
     const bool is_of_room = strncmp(call->path, rooms, sizeof rooms - 1) == 0;
     const bool is_of_plan = strncmp(call->path, plans, sizeof plans - 1) == 0;
+    const bool is_of_job = strncmp(call->path, jobs, sizeof jobs - 1) == 0;
+    const struct api_job *job = is_of_job ? api_job_find(api, call->ids[0]) : NULL;
+    const char *plan_id = is_of_plan ? call->ids[0] : job ? job->plan_id : "";
     struct room *room = is_of_room ? net_room_find(net, call->ids[0]) : is_of_plan ? room_named(call) : NULL;
     if (strcmp(call->exported, "picture") == 0 && !room) { /* as fast as a script asks */
-        net_audit_often(net, &call->identity, call->client, "", is_of_plan ? call->ids[0] : "", "export",
-                        call->exported, false);
+        net_audit_often(net, &call->identity, call->client, "", plan_id, "export", call->exported, false);
         return;
     }
     cJSON *detail = cJSON_CreateObject();
@@ -45,7 +49,7 @@ static void audit_export(struct call *call)
     if (room)
         room_audit_call(room, &call->identity, call->member, call->client, "export", detail, false, clock_now_us());
     else
-        net_audit_by(net, &call->identity, call->client, "", is_of_plan ? call->ids[0] : "", "export", detail);
+        net_audit_by(net, &call->identity, call->client, "", plan_id, "export", detail);
 }
 
 bool api_audit_has_place(const struct api *api, struct problem *problem)

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "core/base/mem.h"
 #include "server/http/api_access.h"
@@ -253,11 +254,24 @@ void api_room_film(struct api *api, struct call *call)
 static bool may_have(const struct api *api, const struct call *call, const struct api_film_state *film,
                      struct problem *problem)
 {
-    if (call->identity.source != IDENTITY_MACHINE && !api_access_to_plan(api, call, ACCESS_LOOK, film->plan_id) &&
-        !(film->room_id[0] && api_access_sees_room(api, call, film->room_id)))
-        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "the film of the job \"%.63s\" is not kept any more",
-                           call->ids[0]);
+    if (!api_access_may_export(api, call, film->plan_id, film->room_id, problem))
+        return problem->type != PROBLEM_NOT_FOUND
+                   ? false
+                   : problem_set(problem, PROBLEM_NOT_FOUND, "", "",
+                                 "the film of the job \"%.63s\" is not kept any more", call->ids[0]);
     return !film->is_named || api_may_name(api, call, film->plan_id, problem);
+}
+
+/* Ids need no quoting; a name of a plan or a patient never stands in it. */
+static void add_name(struct call *call, const struct api_job *job)
+{
+    const time_t seconds = (time_t)(job->created_ms / 1000);
+    struct tm utc;
+    char time[32], disposition[160];
+    (void)gmtime_r(&seconds, &utc);
+    (void)strftime(time, sizeof time, "%Y%m%dT%H%M%SZ", &utc);
+    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-turn-%s.webm\"", job->plan_id, time);
+    call_add_header(call, "Content-Disposition", disposition);
 }
 
 void api_job_film(struct api *api, struct call *call)
@@ -279,17 +293,12 @@ void api_job_film(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    const bool is_allowed = may_have(api, call, &film, &problem);
-    uint8_t *bytes = is_allowed ? malloc(film.n_bytes) : NULL;
-    if (is_allowed && !bytes)
-        problem_set(&problem, PROBLEM_MEMORY, "", "", "there is no memory for the film");
-    if (!bytes) {
+    if (!may_have(api, call, &film, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
-    memcpy(bytes, film.bytes, film.n_bytes);
-    char disposition[128]; /* ids need no quoting */
-    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s.webm\"", film.plan_id);
-    call_add_header(call, "Content-Disposition", disposition);
-    call_answer_bytes(call, 200, "video/webm", bytes, film.n_bytes);
+    if (!api_audit_export(api, call, film.is_named ? "film-named" : "film"))
+        return;
+    add_name(call, job);
+    call_answer_shared(call, 200, "video/webm", call_bytes_ref(film.bytes));
 }

@@ -10,7 +10,11 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 
-enum { MAX_BEGINNINGS = 3 /* a renderer that ends takes its films along: they begin anew */, MAX_FILM_MIN = 60 };
+enum {
+    MAX_BEGINNINGS = 3, /* a renderer that ends takes its films along: they begin anew */
+    MAX_FILM_MIN = 60,
+    BUSY_RETRY_MS = 500 /* where a refusal names no time */
+};
 
 struct api_film {
     struct api_film *next; /* the newest first */
@@ -22,11 +26,10 @@ struct api_film {
     double degrees, fps, quality;
     bool is_named;
     int n_pictures, n_done, n_beginnings;
-    int64_t begun_us;
+    int64_t begun_us, again_us; /* again_us: when a picture that was refused as busy is asked for again; 0: none was */
     enum api_job_state state;
     struct problem problem;
-    uint8_t *bytes; /* when done */
-    size_t n_bytes;
+    struct call_bytes *bytes; /* when done: a reference */
 };
 
 static void free_documents(struct api_film *film)
@@ -40,7 +43,7 @@ static void free_documents(struct api_film *film)
 static void film_free(struct api_film *film)
 {
     free_documents(film);
-    free(film->bytes);
+    call_bytes_unref(film->bytes);
     free(film);
 }
 
@@ -54,6 +57,7 @@ static struct api_film *find(const struct api *api, uint64_t number)
 
 /* ---- making ----------------------------------------------------------------------------------------------------- */
 
+static void begin(struct api_film *film);
 static void request_picture(struct api_film *film);
 
 static void start_waiting(struct api *api)
@@ -69,7 +73,25 @@ static void start_waiting(struct api *api)
         return;
     next->state = JOB_RUNNING;
     next->begun_us = clock_now_us();
-    request_picture(next);
+    begin(next);
+}
+
+/* The film is not made, by this renderer or at all: whatever the renderer has of it goes, and the picture that is asked
+ * for is not drawn. */
+static void let_go(struct api_film *film)
+{
+    struct fleet *fleet = net_fleet(film->api->net);
+    struct packet packet;
+    packet_init(&packet, PACKET_DROP);
+    packet.drop.id = (int64_t)film->request;
+    packet.drop.film = film->renderer_number;
+    if (film->renderer_number)
+        (void)fleet_tell(fleet, film->plan_id, &packet); /* false when not ready: its films went with the renderer */
+    if (film->request)
+        fleet_forget_request(fleet, film->request);
+    film->request = 0;
+    film->renderer_number = 0;
+    film->again_us = 0;
 }
 
 /* After PROBLEM_CANCELLED, which may say that the server is stopping, nothing more is asked of renderers. */
@@ -79,12 +101,42 @@ static void end_film(struct api_film *film, enum api_job_state state, const stru
     if (problem)
         film->problem = *problem;
     free_documents(film);
+    if (state != JOB_DONE && (!problem || problem->type != PROBLEM_CANCELLED))
+        let_go(film);
     if (!problem || problem->type != PROBLEM_CANCELLED)
         start_waiting(film->api);
 }
 
+static bool is_open(const struct api_film *film)
+{
+    struct fleet_plan plan;
+    return fleet_plan_find(net_fleet(film->api->net), film->plan_id, &plan) && plan.state == FLEET_READY;
+}
+
+/* Asks again for a picture that was refused as busy. A renderer that is gone meanwhile has taken the film along. */
+static void request_again(struct api_film *film)
+{
+    struct problem problem;
+    const bool has_pictures = film->n_done > 0, is_lost = has_pictures && !is_open(film);
+    film->again_us = 0;
+    if (is_lost && film->n_beginnings < MAX_BEGINNINGS) {
+        begin(film);
+    } else if (is_lost) {
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
+        end_film(film, JOB_FAILED, &problem);
+    } else if (has_pictures || fleet_open(net_fleet(film->api->net), film->plan_id, &problem)) {
+        request_picture(film);
+    } else {
+        end_film(film, JOB_FAILED, &problem);
+    }
+}
+
 void api_films_go_on(struct api *api)
 {
+    const int64_t now_us = clock_now_us();
+    for (struct api_film *film = api->films; film; film = film->next)
+        if (film->again_us && now_us >= film->again_us)
+            request_again(film);
     start_waiting(api);
 }
 
@@ -93,12 +145,10 @@ static void keep_within_limit(struct api *api)
 {
     uint64_t n_bytes = 0;
     for (struct api_film *film = api->films; film; film = film->next) {
-        n_bytes += film->n_bytes;
-        if (n_bytes > API_KEPT_FILM_BYTES && film->bytes) {
-            n_bytes -= film->n_bytes;
-            free(film->bytes);
+        n_bytes += film->bytes ? call_bytes_size(film->bytes) : 0;
+        if (n_bytes > API_KEPT_FILM_BYTES) {
+            call_bytes_unref(film->bytes); /* answers that are under way keep theirs */
             film->bytes = NULL;
-            film->n_bytes = 0;
         }
     }
 }
@@ -118,8 +168,7 @@ static void take_film(struct api_film *film, struct packet *answer)
         end_film(film, JOB_FAILED, &problem);
         return;
     }
-    film->bytes = answer->blob;
-    film->n_bytes = answer->n_blob;
+    film->bytes = call_bytes_create(answer->blob, answer->n_blob);
     answer->blob = NULL;
     keep_within_limit(film->api);
     end_film(film, JOB_DONE, NULL);
@@ -129,16 +178,20 @@ static void take_film(struct api_film *film, struct packet *answer)
 static bool can_begin_anew(const struct api_film *film, const struct problem *problem)
 {
     return film->n_beginnings < MAX_BEGINNINGS &&
-           (problem->type == PROBLEM_RENDERER || problem->type == PROBLEM_NOT_FOUND || problem->type == PROBLEM_BUSY);
+           (problem->type == PROBLEM_RENDERER || problem->type == PROBLEM_NOT_FOUND ||
+            (problem->type == PROBLEM_TIMEOUT && !is_open(film))); /* it was being read all the time */
 }
 
 static void picture_came(void *context, struct packet *answer, const struct problem *problem)
 {
     struct api_film *film = context;
     film->request = 0;
-    if (problem && can_begin_anew(film, problem)) {
-        film->n_done = 0;
-        request_picture(film);
+    if (problem && problem->type == PROBLEM_BUSY) {
+        const int wait_ms = problem->retry_after_ms > 0 ? problem->retry_after_ms : BUSY_RETRY_MS;
+        film->again_us = clock_now_us() + wait_ms * INT64_C(1000);
+        net_look_at(film->api->net, film->again_us);
+    } else if (problem && can_begin_anew(film, problem)) {
+        begin(film);
     } else if (problem) {
         end_film(film, JOB_FAILED, problem);
     } else if (++film->n_done == film->n_pictures) {
@@ -160,14 +213,6 @@ static void request_picture(struct api_film *film)
     struct fleet *fleet = net_fleet(film->api->net);
     struct problem problem;
     struct packet packet;
-    if (film->n_done == 0) {
-        film->n_beginnings++;
-        film->renderer_number = (int64_t)(++film->api->n_film_beginnings);
-        if (!fleet_open(fleet, film->plan_id, &problem)) {
-            end_film(film, JOB_FAILED, &problem);
-            return;
-        }
-    }
     if (clock_now_us() - film->begun_us > MAX_FILM_MIN * INT64_C(60000000)) {
         problem_set(&problem, PROBLEM_TIMEOUT, "", "", "the film was not made within %d minutes", MAX_FILM_MIN);
         end_film(film, JOB_FAILED, &problem);
@@ -189,6 +234,20 @@ static void request_picture(struct api_film *film)
     film->request = fleet_request(fleet, film->plan_id, &packet, picture_came, film);
 }
 
+/* At its first picture, for the first time or anew. */
+static void begin(struct api_film *film)
+{
+    struct problem problem;
+    let_go(film);
+    film->n_done = 0;
+    film->n_beginnings++;
+    film->renderer_number = (int64_t)(++film->api->n_film_beginnings);
+    if (fleet_open(net_fleet(film->api->net), film->plan_id, &problem))
+        request_picture(film);
+    else
+        end_film(film, JOB_FAILED, &problem);
+}
+
 /* ---- for jobs --------------------------------------------------------------------------------------------------- */
 
 bool api_film_find(const struct api *api, uint64_t number, struct api_film_state *state)
@@ -202,8 +261,7 @@ bool api_film_find(const struct api *api, uint64_t number, struct api_film_state
                                           .plan_id = film->plan_id,
                                           .room_id = film->room_id,
                                           .is_named = film->is_named,
-                                          .bytes = film->bytes,
-                                          .n_bytes = film->n_bytes };
+                                          .bytes = film->bytes };
     return film != NULL;
 }
 
@@ -212,14 +270,6 @@ void api_film_cancel(struct api *api, uint64_t number)
     struct api_film *film = find(api, number);
     if (!film || (film->state != JOB_RUNNING && film->state != JOB_QUEUED))
         return;
-    if (film->request) {
-        struct packet packet;
-        packet_init(&packet, PACKET_DROP);
-        packet.drop.id = (int64_t)film->request;
-        (void)fleet_tell(net_fleet(api->net), film->plan_id, &packet); /* false when not ready: it was never sent */
-        fleet_forget_request(net_fleet(api->net), film->request);
-        film->request = 0;
-    }
     end_film(film, JOB_CANCELLED, NULL);
 }
 

@@ -37,8 +37,7 @@ struct api_film_state {
     const struct problem *problem; /* when failed */
     const char *plan_id, *room_id;
     bool is_named;
-    const uint8_t *bytes; /* when done; NULL: it is not kept any more */
-    size_t n_bytes;
+    struct call_bytes *bytes; /* when done; NULL: it is not kept any more */
 };
 /* False: the film is forgotten. */
 bool api_film_find(const struct api *api, uint64_t number, struct api_film_state *state);

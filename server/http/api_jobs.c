@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/auth/auth.h"
 #include "server/http/api_films.h"
@@ -61,6 +62,7 @@ static cJSON *job_document(const struct api_job *job)
     cJSON_AddStringToObject(json, "state", words[job->state]);
     cJSON_AddStringToObject(json, "phase", job->phase);
     cJSON_AddNumberToObject(json, "percent", job->percent);
+    cJSON_AddNumberToObject(json, "created_ms", (double)job->created_ms);
     if (job->state == JOB_FAILED)
         cJSON_AddItemToObject(json, "problem", problem_to_json(&job->problem));
     else
@@ -120,20 +122,41 @@ static void update_job(struct api *api, struct api_job *job)
 
 void api_jobs_update(struct api *api)
 {
-    size_t first = api->n_jobs > API_MAX_JOBS ? api->n_jobs - API_MAX_JOBS : 0;
     api_films_go_on(api);
-    for (size_t n = first; n < api->n_jobs; n++)
-        update_job(api, &api->jobs[n % API_MAX_JOBS]);
+    for (size_t i = 0; i < API_MAX_JOBS; i++)
+        if (api->jobs[i].number)
+            update_job(api, &api->jobs[i]);
+}
+
+/* How little is lost with the job: the least goes first, and of equals the oldest. */
+static int worth(const struct api_job *job)
+{
+    const bool has_ended = job->state != JOB_RUNNING && job->state != JOB_QUEUED, is_work = job->upload || job->film;
+    return !job->number ? 0 : has_ended && !is_work ? 1 : !is_work ? 2 : has_ended ? 3 : 4;
+}
+
+/* The place of the next job. It is never that of a film or an upload that goes on: there are far fewer of these
+ * (API_MAX_FILMS_WAITING, FLEET_MAX_UPLOADS) than places. */
+static struct api_job *find_place(struct api *api)
+{
+    struct api_job *place = &api->jobs[0];
+    for (size_t i = 1; i < API_MAX_JOBS; i++) {
+        struct api_job *job = &api->jobs[i];
+        if (worth(job) < worth(place) || (worth(job) == worth(place) && job->number < place->number))
+            place = job;
+    }
+    return place;
 }
 
 struct api_job *api_job_create(struct api *api, const struct call *call, const char *kind)
 {
-    struct api_job *job = &api->jobs[api->n_jobs % API_MAX_JOBS];
+    struct api_job *job = find_place(api);
     if (job->film)
         api_film_forget(api, job->film);
     memset(job, 0, sizeof *job);
-    api->n_jobs++;
-    (void)snprintf(job->id, sizeof job->id, "%s-%zu", kind, api->n_jobs);
+    job->number = ++api->n_jobs;
+    job->created_ms = clock_wall_ms();
+    (void)snprintf(job->id, sizeof job->id, "%s-%llu", kind, (unsigned long long)job->number);
     job->kind = kind;
     mem_put_text(job->user, sizeof job->user, call->identity.user);
     job->state = JOB_RUNNING;
@@ -151,10 +174,9 @@ void api_job_answer(struct api *api, struct call *call, struct api_job *job)
 
 struct api_job *api_job_find(struct api *api, const char *id)
 {
-    size_t first = api->n_jobs > API_MAX_JOBS ? api->n_jobs - API_MAX_JOBS : 0;
-    for (size_t n = first; n < api->n_jobs; n++)
-        if (strcmp(api->jobs[n % API_MAX_JOBS].id, id) == 0)
-            return &api->jobs[n % API_MAX_JOBS];
+    for (size_t i = 0; i < API_MAX_JOBS; i++)
+        if (api->jobs[i].number && strcmp(api->jobs[i].id, id) == 0)
+            return &api->jobs[i];
     return NULL;
 }
 

@@ -6,7 +6,7 @@
 #include "server/http/api.h"
 
 enum {
-    API_MAX_JOBS = 500,        /* kept; the oldest is forgotten */
+    API_MAX_JOBS = 500,        /* kept; api_job_create says which is forgotten */
     API_MAX_PICTURES = 32,     /* requested by calls of one plan's renderer and not yet answered; then 503 */
     API_MAX_PIXELS = 32 << 20, /* of these together; a single picture may be larger */
     API_SHARED_AS_SIZE = 160,  /* bytes of what tells shared pictures apart, with the final zero */
@@ -17,7 +17,9 @@ enum {
 enum api_job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLED };
 
 struct api_job {
-    char id[40], plan_id[64];         /* plan_id: "" until an upload is done */
+    char id[40], plan_id[64]; /* plan_id: "" until an upload is done */
+    uint64_t number;          /* of all that were ever made; 0: there is none in this place */
+    int64_t created_ms;
     char user[IDENTITY_MAX_USER + 1]; /* who made it; "": who has not signed in */
     const char *kind;                 /* "open", "upload", "film" */
     uint64_t film;                    /* number of the film that it makes; 0: none */
@@ -49,7 +51,7 @@ struct api {
     atomic_int n_printing;           /* PDFs under way */
     atomic_bool is_printing_stopped; /* by http_stop_printing */
     size_t n_files, n_timings;       /* under way */
-    size_t n_jobs;                   /* ever made; job n is at index n % API_MAX_JOBS */
+    uint64_t n_jobs;                 /* ever made */
     _Atomic uint64_t n_calls[6],
         n_calls_us; /* by status / 100, and time spent; counted by the HTTP thread, read by /metrics */
 };

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,41 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/wire/origin.h"
+
+struct call_bytes {
+    atomic_int references;
+    uint8_t *bytes;
+    size_t n;
+};
+
+struct call_bytes *call_bytes_create(uint8_t *bytes, size_t n)
+{
+    struct call_bytes *shared = mem_new(sizeof *shared);
+    atomic_init(&shared->references, 1);
+    shared->bytes = bytes;
+    shared->n = n;
+    return shared;
+}
+
+struct call_bytes *call_bytes_ref(struct call_bytes *shared)
+{
+    atomic_fetch_add(&shared->references, 1);
+    return shared;
+}
+
+void call_bytes_unref(void *shared)
+{
+    struct call_bytes *one = shared;
+    if (!one || atomic_fetch_sub(&one->references, 1) > 1)
+        return;
+    free(one->bytes);
+    free(one);
+}
+
+size_t call_bytes_size(const struct call_bytes *shared)
+{
+    return shared->n;
+}
 
 struct call *call_create(void)
 {
@@ -47,7 +83,9 @@ void call_destroy(struct call *call)
     if (call->upload_path)
         (void)unlink(call->upload_path); /* no handler has kept the file */
     free(call->upload_path);
-    free(call->bytes);
+    if (!call->shared)
+        free(call->bytes);
+    call_bytes_unref(call->shared);
     free(call);
 }
 
@@ -141,6 +179,12 @@ void call_answer_bytes(struct call *call, int status, const char *media_type, ui
     call->bytes = bytes;
     call->n_bytes = n;
     finish(call, status, media_type);
+}
+
+void call_answer_shared(struct call *call, int status, const char *media_type, struct call_bytes *shared)
+{
+    call->shared = shared;
+    call_answer_bytes(call, status, media_type, shared->bytes, shared->n);
 }
 
 void call_answer_text(struct call *call, int status, const char *media_type, const char *text)

@@ -24,6 +24,7 @@ struct call_pair {
 
 struct api_act;
 struct feed;
+struct call_bytes; /* what several answers are made of, counted */
 
 struct call {
     /* the request */
@@ -53,6 +54,7 @@ struct call {
     struct feed *feed; /* NULL, or the reader's side of the feed that the answer is made of, without an end */
     uint8_t *bytes;
     size_t n_bytes;
+    struct call_bytes *shared; /* NULL, or whose bytes these are: a reference */
     struct call_pair headers[CALL_MAX_HEADERS];
     size_t n_headers;
 
@@ -72,6 +74,12 @@ struct call {
     const char *route;         /* "GET /api/v1/plans/{plan}", for metrics; never an id */
 };
 
+/* One reference, the caller's. Takes bytes. */
+struct call_bytes *call_bytes_create(uint8_t *bytes, size_t n);
+struct call_bytes *call_bytes_ref(struct call_bytes *shared);
+void call_bytes_unref(void *shared); /* a struct call_bytes; NULL is allowed; any thread */
+size_t call_bytes_size(const struct call_bytes *shared);
+
 struct call *call_create(void);
 void call_destroy(struct call *call);
 void call_set_path(struct call *call, const char *path);
@@ -82,6 +90,8 @@ void call_answer_json(struct call *call, int status, cJSON *json); /* takes json
 void call_answer_problem(struct call *call, const struct problem *problem);
 void call_answer_bytes(struct call *call, int status, const char *media_type, uint8_t *bytes,
                        size_t n); /* takes bytes */
+/* Takes shared. */
+void call_answer_shared(struct call *call, int status, const char *media_type, struct call_bytes *shared);
 void call_answer_text(struct call *call, int status, const char *media_type, const char *text);
 void call_answer_feed(struct call *call, const char *media_type, struct feed *feed); /* takes its reader's side */
 void call_answer_nothing(struct call *call, int status);

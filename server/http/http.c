@@ -153,7 +153,11 @@ static struct MHD_Response *make_response(struct request *request)
         request->http->feeding = request;
         return MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, FEED_BLOCK, read_feed, request, NULL);
     }
-    struct MHD_Response *response = MHD_create_response_from_buffer(call->n_bytes, call->bytes, MHD_RESPMEM_MUST_FREE);
+    struct MHD_Response *response =
+        call->shared ? MHD_create_response_from_buffer_with_free_callback_cls(call->n_bytes, call->bytes,
+                                                                              call_bytes_unref, call->shared)
+                     : MHD_create_response_from_buffer(call->n_bytes, call->bytes, MHD_RESPMEM_MUST_FREE);
+    call->shared = NULL;
     call->bytes = NULL;
     return response;
 }

@@ -159,6 +159,8 @@ NODISCARD bool net_erase_plan(struct net *net, const char *plan_id, const struct
 /* looked is called whenever sign-ins may have ended or rights gone, and every 20 s where people sign in: whoever serves
  * somebody for long asks then whether it still may. It is called from nowhere but the loop or a call. */
 void net_on_identities(struct net *net, void (*looked)(void *context), void *context);
+/* looked is called at this time as well, once; of several times at the earliest. */
+void net_look_at(struct net *net, int64_t time_us);
 /* Whether this sign-in has not ended: asked of those who stay. */
 bool net_identity_holds(const struct net *net, const struct identity *who);
 /* Records what may happen many times a second: the first at once, and equal ones as one row a minute. what: a word. */

@@ -166,12 +166,13 @@ struct net {
     void *rights;
     void (*identities_looked)(void *context); /* net_on_identities; NULL: nobody asks */
     void *identities_context;
-    bool store_was_open;                                                         /* so the rooms that sleep are known */
+    int64_t looked_us;   /* when it is called as well: net_look_at; 0: at no time */
+    bool store_was_open; /* so the rooms that sleep are known */
     void (*files_looked)(struct net_room *entry, const struct fleet_plan *plan); /* keep_files_looked */
     int64_t look_us;                    /* when files of plans are looked at next */
     int64_t fleet_tick_us;              /* when fleet_tick is due */
     int64_t calm_from_us;               /* unless somebody does something before, fleet_tick is rare from then on */
-    int64_t due_us;                     /* not after the earliest time that a room is due: schedule.h */
+    int64_t due_us;                     /* not after the earliest time that a room, or looked_us, is due: schedule.h */
     bool is_spoken_to;                  /* a room is */
     struct room_counters closed;        /* sum over the rooms that were closed */
     atomic_bool is_listed, is_stopping; /* read by any thread */

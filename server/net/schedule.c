@@ -46,7 +46,7 @@ bool schedule_is_due(const struct net *net)
 void schedule_due_rooms(struct net *net)
 {
     const int64_t now_us = clock_now_us();
-    net->due_us = INT64_MAX;
+    net->due_us = net->looked_us ? net->looked_us : INT64_MAX;
     for (size_t i = 0; i < net->n_rooms; i++)
         if (net->rooms[i]->wake_us <= now_us)
             schedule_settle(net->rooms[i]);

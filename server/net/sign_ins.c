@@ -31,6 +31,13 @@ static void tell_looked(struct net *net)
         net->identities_looked(net->identities_context);
 }
 
+void net_look_at(struct net *net, int64_t time_us)
+{
+    if (!net->looked_us || time_us < net->looked_us)
+        net->looked_us = time_us;
+    schedule_at(net, net->looked_us);
+}
+
 void net_session_over(struct net *net, const char *session)
 {
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
@@ -71,6 +78,10 @@ static void look_at(struct net *net, struct visitor *visitor)
 
 void sign_ins_check(struct net *net, int64_t now_us)
 {
+    if (net->looked_us && now_us >= net->looked_us) {
+        net->looked_us = 0;
+        tell_looked(net);
+    }
     if (!net->auth || (!auth_is_local(net->auth) && !auth_is_proxied(net->auth)))
         return;
     if (now_us >= net->sign_ins_us) {

@@ -7,15 +7,17 @@
 #include "core/base/mem.h"
 #include "server/wire/json.h"
 
-enum { ENCODER_THREADS = 2 /* the pictures of rooms go on beside a film */ };
+enum { ENCODER_THREADS = 2 /* the pictures of rooms go on beside a film */, BUSY_RETRY_MS = 500 };
 
 struct films_entry {
     int64_t number, n_pictures; /* number 0: free */
     struct film *film;          /* a reference */
     bool is_busy;               /* a picture is under way */
+    uint64_t used;              /* grows with each picture that began or ended */
 };
 struct films {
     struct films_entry entries[FILMS_MAX];
+    uint64_t n_uses;
 };
 
 struct films *films_create(void)
@@ -44,6 +46,20 @@ static struct films_entry *find(struct films *films, int64_t number)
     return NULL;
 }
 
+/* A free place, or that of the film which has waited longest for its next picture: whoever made it may be gone. NULL:
+ * each has a picture under way. */
+static struct films_entry *find_place(struct films *films)
+{
+    struct films_entry *place = find(films, 0);
+    for (size_t i = 0; !place && i < FILMS_MAX; i++)
+        if (!films->entries[i].is_busy)
+            place = &films->entries[i];
+    for (size_t i = 0; place && place->number && i < FILMS_MAX; i++)
+        if (!films->entries[i].is_busy && films->entries[i].used < place->used)
+            place = &films->entries[i];
+    return place;
+}
+
 static bool begin(struct films_entry *entry, const struct packet_render *render, struct problem *problem)
 {
     struct error err = { 0 };
@@ -52,6 +68,7 @@ static bool begin(struct films_entry *entry, const struct packet_render *render,
                                           .n_threads = ENCODER_THREADS,
                                           .spare_px = 2 * FILM_SPARE_LINES * annotate_text_px(ANNOTATE_MIN_WIDTH_PX),
                                           .max_bytes = FILM_MAX_BYTES };
+    forget(entry);
     *entry = (struct films_entry){ .number = render->film, .film = film_create(&options, &err) };
     if (entry->film)
         return true;
@@ -63,9 +80,10 @@ struct film *films_begin_picture(struct films *films, const struct packet_render
 {
     struct films_entry *entry = find(films, render->film);
     if (!entry && render->film_at == 0) {
-        entry = find(films, 0);
+        entry = find_place(films);
         if (!entry) {
             (void)problem_set(problem, PROBLEM_BUSY, "", "", "%d films are being made of this plan already", FILMS_MAX);
+            problem->retry_after_ms = BUSY_RETRY_MS;
             return NULL;
         }
         if (!begin(entry, render, problem))
@@ -77,6 +95,7 @@ struct film *films_begin_picture(struct films *films, const struct packet_render
         return NULL;
     }
     entry->is_busy = true;
+    entry->used = ++films->n_uses;
     return film_ref(entry->film);
 }
 
@@ -86,7 +105,22 @@ void films_end_picture(struct films *films, int64_t number, bool is_added, bool 
     if (!entry)
         return;
     entry->is_busy = false;
+    entry->used = ++films->n_uses;
     entry->n_pictures++;
     if (!is_added || is_whole)
+        forget(entry);
+}
+
+void films_put_off_picture(struct films *films, int64_t number)
+{
+    struct films_entry *entry = number ? find(films, number) : NULL;
+    if (entry)
+        entry->is_busy = false;
+}
+
+void films_drop(struct films *films, int64_t number)
+{
+    struct films_entry *entry = number ? find(films, number) : NULL;
+    if (entry)
         forget(entry);
 }

@@ -75,12 +75,17 @@ static void refuse_busy(const struct pictures *pictures, int64_t id)
     link_send_problem(pictures->options.link, id, &problem);
 }
 
-static void end_request(struct pictures *pictures, struct picture_request *request, bool is_made)
+static void free_request(struct picture_request *request)
 {
-    films_end_picture(pictures->films, request->film, is_made, request->ends_film);
     atomic_store(&request->id, NO_REQUEST);
     snapshot_unref(request->snapshot);
     request->snapshot = NULL;
+}
+
+static void end_request(struct pictures *pictures, struct picture_request *request, bool is_made)
+{
+    films_end_picture(pictures->films, request->film, is_made, request->ends_film);
+    free_request(request);
 }
 
 static struct picture_request *find_request(struct pictures *pictures, uint64_t id)
@@ -91,13 +96,14 @@ static struct picture_request *find_request(struct pictures *pictures, uint64_t 
     return NULL;
 }
 
-void pictures_drop(struct pictures *pictures, int64_t id)
+void pictures_drop(struct pictures *pictures, const struct packet_drop *drop)
 {
-    struct picture_request *request = find_request(pictures, (uint64_t)id);
-    if (!request)
-        return;
-    end_request(pictures, request, false);
-    pipeline_drop(pictures->options.pipeline, (uint64_t)id);
+    struct picture_request *request = drop->id ? find_request(pictures, (uint64_t)drop->id) : NULL;
+    if (request) {
+        end_request(pictures, request, false);
+        pipeline_drop(pictures->options.pipeline, (uint64_t)drop->id);
+    }
+    films_drop(pictures->films, drop->film);
 }
 
 static void submit(struct pictures *pictures, struct waiting_request *waiting)
@@ -113,7 +119,8 @@ static void submit(struct pictures *pictures, struct waiting_request *waiting)
     waiting_request_destroy(waiting);
     if (!request || pipeline_submit(pictures->options.pipeline, &drawn, &err)) /* none: dropped meanwhile */
         return;
-    end_request(pictures, request, false);
+    films_put_off_picture(pictures->films, request->film);
+    free_request(request);
     refuse_busy(pictures, (int64_t)drawn.id);
 }
 

@@ -24,8 +24,8 @@ void pictures_refuse_all(struct pictures *pictures, const struct problem *proble
 void pictures_warm_up(struct pictures *pictures);
 /* Starts a picture, which is answered with a frame or a problem. */
 void pictures_start(struct pictures *pictures, const struct packet_render *render);
-/* The picture is no longer wanted. */
-void pictures_drop(struct pictures *pictures, int64_t id);
+/* The picture, or the film, is no longer wanted. */
+void pictures_drop(struct pictures *pictures, const struct packet_drop *drop);
 /* The shapes of a picture are built: hands it to the render thread. Takes waiting. */
 void pictures_shapes_built(struct pictures *pictures, struct waiting_request *waiting);
 /* A picture is drawn and compressed, or failed: answers its request. */

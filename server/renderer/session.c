@@ -134,7 +134,7 @@ static void handle_packet(struct session *session, struct packet *packet)
     }
     case PACKET_SCENE: put_scene(session, packet); break;
     case PACKET_FORGET: scenes_forget_room(session->scenes, packet->forget.room); break;
-    case PACKET_DROP: pictures_drop(session->pictures, packet->drop.id); break;
+    case PACKET_DROP: pictures_drop(session->pictures, &packet->drop); break;
     case PACKET_RENDER: pictures_start(session->pictures, &packet->render); break;
     case PACKET_AWAIT_READY: {
         cJSON *body = cJSON_CreateObject();

@@ -149,22 +149,24 @@ describe('Whom the proxy names', () => {
   test('meets others in a room; nobody does without being named', async () => {
     const headers = { Host: 'beamroom.example', Origin: 'https://beamroom.example' };
     const id = (await ask('/api/v1/plans', user('bert'))).json.plans[0].id;
-    const made = await new Promise((done) => {
-      const body = JSON.stringify({ plan: id });
-      request(
-        {
-          socketPath: path,
-          path: '/api/v1/rooms',
-          method: 'POST',
-          headers: { ...headers, 'X-Beamroom-User': 'bert', 'Content-Type': 'application/json', 'Content-Length': body.length },
-        },
-        (answer) => {
-          let text = '';
-          answer.on('data', (part) => (text += part));
-          answer.on('end', () => done({ status: answer.statusCode, json: JSON.parse(text) }));
-        },
-      ).end(body);
-    });
+    const post = (to, json) =>
+      new Promise((done) => {
+        const body = JSON.stringify(json);
+        request(
+          {
+            socketPath: path,
+            path: to,
+            method: 'POST',
+            headers: { ...headers, 'X-Beamroom-User': 'bert', 'Content-Type': 'application/json', 'Content-Length': body.length },
+          },
+          (answer) => {
+            let text = '';
+            answer.on('data', (part) => (text += part));
+            answer.on('end', () => done({ status: answer.statusCode, json: JSON.parse(text) }));
+          },
+        ).end(body);
+      });
+    const made = await post('/api/v1/rooms', { plan: id });
     assert.equal(made.status, 201);
     const at = `/api/v1/rooms/${made.json.id}/ws`;
     const bert = await Client.open(daemon.url, at, { ...headers, 'X-Beamroom-User': 'bert' }, connect(path));
@@ -179,6 +181,15 @@ describe('Whom the proxy names', () => {
     const row = (await ask(`/api/v1/rooms/${made.json.id}`, user('bert'))).json;
     assert.equal(row.id, made.json.id);
 
+    const film = (await post(`/api/v1/plans/${id}/video`, { seconds: 1, fps: 2, view: { kind: '3d', size_px: [240, 240] } })).json;
+    const job = `/api/v1/jobs/${film.id}`;
+    const copy = async () => (({ status, json }) => [status, json?.code])(await ask(`${job}/video`, user('bert')));
+    await until(
+      async () => (await ask(job, user('bert'))).json,
+      ({ state }) => state === 'done',
+    );
+    assert.deepEqual(await copy(), [200, undefined]);
+
     await reload(grants(`${demo} bert observer`, '* @chiefs admin'), /1 new, 1 gone/); // another role: comes in again
     assert.deepEqual((({ reason, retry_ms }) => ({ reason, retry_ms }))(await bert.message('bye')), {
       reason: 'you have another role here now',
@@ -187,7 +198,9 @@ describe('Whom the proxy names', () => {
     const again = await Client.open(daemon.url, at, { ...headers, 'X-Beamroom-User': 'bert' }, connect(path));
     again.send({ type: 'hello', protocol: 2 });
     await again.message('members', ({ members: list }) => list.some(({ user: id, role }) => id === 'bert' && role === 'observer'));
+    assert.deepEqual(await copy(), [403, 'role'], 'an observer takes nothing away');
     await reload(grants('* @chiefs admin'), /0 new, 1 gone/);
+    assert.equal((await copy())[0], 404);
     assert.deepEqual((({ reason, retry_ms }) => ({ reason, retry_ms }))(await again.message('bye')), {
       reason: 'you may not be in this room any more',
       retry_ms: null,

@@ -276,12 +276,12 @@ describe('The matrix of rights', { concurrency: false }, () => {
   });
 
   /** A WebSocket of this kind of caller in the room, with the seat that it has there. */
-  async function enter(kind, room) {
+  async function enter(kind, room, more = {}) {
     const seat = seats[['guest', 'wall'].indexOf(kind)];
     if (seat && room === rooms.own[kind]) return seat;
     const { headers, socket } = callers[kind];
     const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`, headers, socket ? connect(socketPath) : null);
-    client.send({ type: 'hello', protocol: 2, name: 'Somebody' });
+    client.send({ type: 'hello', protocol: 2, name: 'Somebody', ...more });
     return client;
   }
 
@@ -408,6 +408,67 @@ describe('The matrix of rights', { concurrency: false }, () => {
     const refused = await ask('guest', at);
     assert.deepEqual([refused.status, refused.json?.code], [403, 'role']);
     assert.notEqual((await ask('planner', at)).status, 403);
+  });
+
+  const film = { seconds: 1, fps: 2, view: { kind: '3d', size_px: [240, 240] } };
+  const filmOf = async (kind, at, order = film) => (await made(kind, `${at}/video`, order)).id;
+  async function madeFilm(kind, at) {
+    const path = `/api/v1/jobs/${await filmOf(kind, at)}`;
+    const job = await until(
+      async () => (await ask(kind, path)).json,
+      ({ state }) => !['queued', 'running'].includes(state),
+    );
+    assert.equal(job.state, 'done', JSON.stringify(job));
+    return path;
+  }
+
+  test('a film is its maker’s alone, with its job; one person has two that are not made yet', async () => {
+    const plan = `/api/v1/plans/${plans.granted}`;
+    assert.equal(saidBy(await ask('planner', `${plan}/video`, 'POST', { ...film, identity: true })), 'forbidden', 'nor with a name');
+    const path = await madeFilm('planner', plan);
+    for (const kind of ['planner', 'token read']) assert.equal((await ask(kind, `${path}/video`)).headers['content-type'], 'video/webm');
+    const long = { ...film, seconds: 60, fps: 30 };
+    const jobs = [await filmOf('planner', plan, long), await filmOf('planner', plan, long)];
+    const third = await ask('token plan', `${plan}/video`, 'POST', long); // of one person
+    assert.deepEqual([third.status, third.json.type], [429, '/problems/limit']);
+    const others = await filmOf('presenter', plan, long);
+    for (const job of [path, ...jobs.map((id) => `/api/v1/jobs/${id}`)])
+      for (const [method, at] of [
+        ['GET', job],
+        ['GET', `${job}/video`],
+        ['DELETE', job],
+      ])
+        for (const kind of ['presenter', 'reviewer', 'guest', 'nobody'])
+          assert.equal(saidBy(await ask(kind, at, method)), isSignedIn(kind) ? 'absent' : 'signed-out', `${kind}: ${method} ${at}`);
+    const cancelled = async (kind, id) => assert.equal((await ask(kind, `/api/v1/jobs/${id}`, 'DELETE')).json.state, 'cancelled');
+    await cancelled('planner', jobs[0]);
+    jobs[0] = await filmOf('planner', plan, long); // the place is free again
+    for (const id of jobs) await cancelled('planner', id);
+    await cancelled('presenter', others);
+  });
+
+  test('whoever may not order a film any more does not get the one that was made, and each copy is an export', async () => {
+    const { id } = await made('admin', '/api/v1/rooms', { plan: plans.foreign });
+    const room = `/api/v1/rooms/${id}`;
+    const { token } = await made('admin', `${room}/links`, { role: 'reviewer' });
+    const seat = await enter('presenter', id, { link: token }); // on the plan itself they have no right
+    seats.push(seat);
+    const { member, secret } = await seat.message('welcome');
+    seat.headers = { 'Beamroom-Member': `${member} ${secret}` };
+    callers.seated = { ...callers.presenter, headers: { ...callers.presenter.headers, ...seat.headers } };
+    const path = `${await madeFilm('seated', room)}/video`;
+    assert.equal(saidBy(await ask('presenter', path)), 'absent', 'without the seat');
+    const exports = async () => (await ask('admin', '/api/v1/audit?action=export')).json.rows.filter(({ user }) => user === 'presenter');
+    const before = (await exports()).length;
+    const got = await ask('seated', path);
+    assert.deepEqual([got.status, got.headers['content-type']], [200, 'video/webm']);
+    assert.match(got.headers['content-disposition'], new RegExp(`filename="${plans.foreign}-turn-\\d{8}T\\d{6}Z\\.webm"`));
+    const { length } = got.text;
+    const rows = await until(exports, (all) => all.length > before);
+    const row = rows.find(({ detail }) => detail.media_type === 'video/webm');
+    assert.deepEqual([row.detail.what, row.detail.bytes, row.result], ['film', length, 'done']);
+    assert.ok((await ask('admin', `${room}/members/${member}`, 'DELETE')).status < 300);
+    assert.equal(saidBy(await ask('seated', path)), 'absent');
   });
 
   test('one person takes at most half of the displays of a room', async () => {

@@ -220,7 +220,7 @@ const started = async (body, of = plan) => {
 async function filmOf(id) {
   const answer = await fetch(`${api}/jobs/${id}/video`);
   assert.deepEqual([answer.status, answer.headers.get('content-type')], [200, 'video/webm']);
-  assert.match(answer.headers.get('content-disposition'), /^attachment; filename="phantom.webm"$/);
+  assert.match(answer.headers.get('content-disposition'), /^attachment; filename="phantom-turn-\d{8}T\d{6}Z.webm"$/);
   return webm(Buffer.from(await answer.arrayBuffer()));
 }
 

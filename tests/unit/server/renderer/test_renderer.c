@@ -289,6 +289,46 @@ static void a_scene_is_kept_for_as_many_rooms_as_a_daemon_may_have_and_no_more(v
     world_end(&world);
 }
 
+/* One more picture of the film. True if it is added, else the renderer must not know a film with as many pictures. */
+static bool adds_to_film(struct world *world, int film, int at, struct reply *reply)
+{
+    char packet[160];
+    snprintf(packet, sizeof packet,
+             "{\"type\":\"render\",\"annotations\":true,\"film\":%d,\"film_at\":%d,\"view\":{\"size_px\":[64,64]}}",
+             film, at);
+    ask(world, packet, reply);
+    if (reply->problem.type == PROBLEM_NONE)
+        return true;
+    assert_int_equal(reply->problem.type, PROBLEM_NOT_FOUND);
+    return false;
+}
+
+static void films_that_nobody_goes_on_with_do_not_use_up_the_places(void **state)
+{
+    (void)state;
+    enum { N_PLACES = 4 /* "film" of "render" in proto/packets.json */ };
+    struct world world;
+    struct reply reply = { 0 };
+    begin_head(&world, true, small);
+    world_start(&world, 1);
+    world_open_plan(&world, PLAN);
+    world_wait_for_state(&world, PLAN, FLEET_READY);
+    for (int film = 1; film <= N_PLACES; film++)
+        assert_true(adds_to_film(&world, film, 0, &reply));
+    assert_true(world_tell(&world, PLAN, parse("{\"type\":\"drop\",\"id\":0,\"film\":2}")));
+    assert_true(adds_to_film(&world, 5, 0, &reply)); /* in the place of the dropped one */
+    assert_true(adds_to_film(&world, 1, 1, &reply));
+    assert_false(adds_to_film(&world, 2, 1, &reply));
+    assert_true(adds_to_film(&world, 6, 0, &reply)); /* in that of 3, which waits longest */
+    assert_false(adds_to_film(&world, 3, 1, &reply));
+    assert_true(adds_to_film(&world, 4, 1, &reply));
+    assert_true(adds_to_film(&world, 1, 2, &reply));
+    for (int film = 7; film < 7 + 2 * N_PLACES; film++)
+        assert_true(adds_to_film(&world, film, 0, &reply));
+    reply_finish(&reply);
+    world_end(&world);
+}
+
 static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **state)
 {
     (void)state;
@@ -479,6 +519,7 @@ int main(void)
         cmocka_unit_test(numbers_are_answered),
         cmocka_unit_test(what_is_asked_wrongly_is_refused_with_its_place),
         cmocka_unit_test(a_scene_is_kept_for_as_many_rooms_as_a_daemon_may_have_and_no_more),
+        cmocka_unit_test(films_that_nobody_goes_on_with_do_not_use_up_the_places),
         cmocka_unit_test(a_plan_that_cannot_be_read_fails_with_the_loaders_sentence),
         cmocka_unit_test(a_file_name_that_is_no_utf8_comes_out_readable),
         cmocka_unit_test(a_plan_larger_than_the_memory_limit_fails_and_says_so),

@@ -1,0 +1,143 @@
+// Films where it matters what the renderer says and gets: a made-up renderer (film_renderer.mjs), no pictures. What films show: snapshot.test.mjs.
+import assert from 'node:assert/strict';
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { bin, call, demo, startDaemon, until } from './daemon.mjs';
+
+let folder, daemon, api;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-films-'));
+  copyFileSync(new URL('film_renderer.mjs', import.meta.url), join(folder, 'film_renderer.mjs'));
+  const renderer = join(folder, 'renderer');
+  const [node, real] = [process.execPath, join(bin, 'beamroom-render')];
+  writeFileSync(
+    renderer,
+    `#!/bin/sh\ncase " $* " in *" --plan-id "*) exec ${node} ${folder}/film_renderer.mjs "$@";; esac\nexec ${real} "$@"\n`,
+    {
+      mode: 0o755,
+    },
+  );
+  daemon = await startDaemon({ plans: [demo], args: ['--renderer', renderer, '--max-renderer-mib', '0'] });
+  api = `${daemon.url}/api/v1`;
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.length === 1,
+  );
+});
+after(async () => {
+  await daemon?.stop();
+  if (folder) rmSync(folder, { recursive: true, force: true });
+});
+
+const packets = () => {
+  const log = join(folder, 'packets.jsonl');
+  return existsSync(log)
+    ? readFileSync(log, 'utf8')
+        .trim()
+        .split('\n')
+        .map((line) => JSON.parse(line))
+    : [];
+};
+const order = async (quality, seconds = 1) => {
+  const body = { seconds, fps: 4, quality, view: { kind: '3d', size_px: [240, 240] } };
+  const { status, json, text } = await call(`${api}/plans/phantom/video`, 'POST', body);
+  assert.equal(status, 202, text);
+  return json.id;
+};
+const job = async (id) => (await call(`${api}/jobs/${id}`)).json;
+const ended = (id) =>
+  until(
+    () => job(id),
+    ({ state }) => !['queued', 'running'].includes(state),
+  );
+/** The packets about the newest film of this quality. */
+const about = (quality) => {
+  const all = packets();
+  const { film } = all.filter((packet) => packet.quality === quality).at(-1) ?? {};
+  return all.filter((packet) => packet.film === film);
+};
+
+test('a film goes on where its renderer was busy for a moment, when that said', async () => {
+  const id = await order(4);
+  assert.equal((await ended(id)).state, 'done');
+  const renders = about(4);
+  assert.deepEqual(
+    renders.map(({ film_at: at = 0 }) => at),
+    [0, 1, 2, 2, 3],
+    'the one film, not from its beginning',
+  );
+  assert.ok(renders[3].ms - renders[2].ms >= 890, 'after retry_after_ms');
+});
+
+test('a film names the patient where that is ordered, and in no other; the audit has both words', async () => {
+  for (const isNamed of [false, true]) {
+    const body = { seconds: 1, fps: 2, quality: isNamed ? 71 : 70, view: { kind: '3d', size_px: [240, 240] }, identity: isNamed };
+    const { status, json } = await call(`${api}/plans/phantom/video`, 'POST', body);
+    assert.equal(status, 202);
+    assert.equal((await ended(json.id)).state, 'done');
+    assert.deepEqual(
+      about(body.quality).map(({ named = false }) => named),
+      [isNamed, isNamed],
+    );
+    assert.equal((await call(`${api}/jobs/${json.id}/video`)).status, 200);
+    const what = isNamed ? 'film-named' : 'film';
+    await until(
+      async () => (await call(`${api}/audit?action=export`)).json.rows.map(({ detail }) => [detail.what, detail.media_type]),
+      (rows) => rows.some(([word, type]) => word === what && type === 'video/webm'),
+    );
+  }
+});
+
+test('a film that is cancelled or fails is forgotten by its renderer', async () => {
+  const id = await order(2);
+  await until(
+    () => about(2),
+    ({ length }) => length === 1,
+  );
+  assert.equal((await call(`${api}/jobs/${id}`, 'DELETE')).json.state, 'cancelled');
+  await until(
+    () => about(2),
+    (all) => all.at(-1).type === 'drop',
+  );
+  const failed = await ended(await order(5));
+  assert.deepEqual([failed.state, failed.problem.type], ['failed', '/problems/timeout']);
+  await until(
+    () => about(5),
+    (all) => all.at(-1).type === 'drop',
+  );
+});
+
+test('128 MiB of films are kept, then the oldest goes; one that is being sent is sent whole', async () => {
+  const ids = [];
+  for (let i = 0; i < 4; i++) ids.push(await order(3));
+  for (const id of ids) assert.equal((await ended(id)).state, 'done');
+  const whole = 31 << 20;
+  const slow = await fetch(`${api}/jobs/${ids[0]}/video`); // its body is read after the film is forgotten
+  ids.push(await order(3));
+  assert.equal((await ended(ids[4])).state, 'done');
+  const sizes = await Promise.all(
+    ids.map(async (id) => {
+      const answer = await fetch(`${api}/jobs/${id}/video`);
+      return answer.status === 200 ? (await answer.arrayBuffer()).byteLength : answer.status;
+    }),
+  );
+  assert.deepEqual(sizes, [404, whole, whole, whole, whole]);
+  assert.match((await call(`${api}/jobs/${ids[0]}/video`)).json.detail, /not kept any more/);
+  assert.equal((await slow.arrayBuffer()).byteLength, whole);
+});
+
+test('jobs that open plans do not push out a film, neither one that is made nor one that is done', async () => {
+  const [done, running] = [await order(80), await order(2)];
+  assert.equal((await ended(done)).state, 'done');
+  const open = async () => assert.equal((await call(`${api}/plans/phantom/open`, 'POST')).status, 202);
+  for (let i = 0; i < 17; i++) await Promise.all(Array.from({ length: 30 }, open)); // more than are kept
+  const opened = (await call(`${api}/plans/phantom/open`, 'POST')).json;
+  assert.ok(Math.abs(opened.created_ms - Date.now()) < 60000);
+  assert.equal((await job(running)).state, 'running');
+  assert.equal((await call(`${api}/jobs/${done}/video`)).status, 200);
+  assert.equal((await job(opened.id)).state, 'done', 'jobs after the 500th are kept as others');
+  assert.equal((await call(`${api}/jobs/${running}`, 'DELETE')).json.state, 'cancelled');
+});
