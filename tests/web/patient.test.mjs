@@ -225,7 +225,7 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     await own.context().close();
   });
 
-  it('a snapshot has the name only when that is ticked, off each time', async () => {
+  it('a snapshot, and a film, has the name only when that is ticked, off each time', async () => {
     const menu = page.getByRole('button', { name: 'Snapshot', exact: true });
     const tick = page.getByRole('checkbox', { name: 'with the patient’s identity' });
     const save = async () => {
@@ -240,6 +240,22 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     await menu.click();
     assert.equal(await tick.isChecked(), false);
     assert.notDeepEqual(await save(), named);
+
+    const orders = [];
+    page.on('request', (one) => one.method() === 'POST' && /\/video$/.test(one.url()) && orders.push(one.postDataJSON().identity));
+    for (const isNamed of [true, false]) {
+      await menu.click();
+      await page.getByRole('menuitem', { name: /Film of a turn/ }).click();
+      const dialog = page.getByRole('dialog', { name: 'Film of a turn' });
+      const named = dialog.getByRole('checkbox', { name: 'with the patient’s identity' });
+      assert.equal(await named.isChecked(), false);
+      if (isNamed) await named.check();
+      await dialog.getByRole('button', { name: 'Make the film' }).press('Enter');
+      await dialog.getByRole('button', { name: 'Cancel', exact: true }).press('Enter');
+      await dialog.getByRole('button', { name: 'Make the film' }).waitFor();
+      await page.keyboard.press('Escape');
+    }
+    assert.deepEqual(orders, [true, false]);
   });
 
   it('of two plans the banner switches dose, beam and structure set together, in one step to undo', async () => {

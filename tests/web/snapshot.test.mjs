@@ -249,6 +249,13 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
           return context.getImageData(0, 0, w, h).data;
         };
         video.muted = true;
+        document.body.append(video);
+        let shownS = Number.NaN; // where the frame lies that is on the screen: a seek may end before its frame is
+        const presented = (_now, { mediaTime }) => {
+          shownS = mediaTime;
+          video.requestVideoFrameCallback(presented);
+        };
+        video.requestVideoFrameCallback(presented);
         video.src = URL.createObjectURL(new Blob([bytes(video_data)], { type: 'video/webm' }));
         await loads(video, 'loadeddata');
         const images = await Promise.all(pictures.map((text) => createImageBitmap(new Blob([bytes(text)], { type: 'image/png' }))));
@@ -260,6 +267,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
           const seeked = loads(video, 'seeked');
           video.currentTime = second;
           await seeked;
+          while (!(shownS <= second && second - shownS < 0.21)) await new Promise((done) => requestAnimationFrame(done));
           const frame = pixels(video, w, h);
           off.push(drawn.map((one) => distance(frame, one)));
         }
@@ -267,6 +275,17 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
       },
       [film, stills, seconds],
     );
+
+  const isJob = /\/api\/v1\/jobs\/[^/]+$/;
+  /** Calls to these addresses wait until they are let go. */
+  const held = (page, addresses) => {
+    let letGo;
+    const isFree = new Promise((free) => {
+      letGo = free;
+    });
+    const isSet = page.route(addresses, (route) => isFree.then(() => route.continue()));
+    return { isSet, letGo };
+  };
 
   once('a film of a turn is ordered in the menu, made while the page goes on, and shows what the room showed', async () => {
     const room = await world.newRoom();
@@ -283,16 +302,21 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await dialog.getByRole('spinbutton', { name: 'Length' }).press('Tab');
     await dialog.getByText('24 pictures of the scene', { exact: false }).waitFor();
     await dialog.getByRole('radio', { name: '12', exact: true }).click();
+    const jobs = held(page, isJob); // the page does not learn that it is made before it has been looked at
+    await jobs.isSet;
+    const ordered = page.waitForResponse((answer) => answer.request().method() === 'POST' && answer.url().endsWith('/video'));
     await dialog.getByRole('button', { name: 'Make the film' }).press('Enter');
     await dialog.getByRole('progressbar', { name: 'Progress of the film' }).waitFor();
+    await ordered;
     await patch(room, { regions: { brain: { color: '#ff0000' } } }); // the film is of the scene before
     assert.deepEqual(await axe(page), []);
     await page.keyboard.press('Escape');
     await dialog.waitFor({ state: 'detached' });
+    jobs.letGo();
     await page.getByText('The film is made', { exact: true }).waitFor({ timeout: 120000 });
     await menu(page, /Film of a turn/);
     const [download] = await Promise.all([page.waitForEvent('download'), dialog.getByRole('button', { name: 'Save the film' }).click()]);
-    assert.equal(download.suggestedFilename(), 'phantom-turn.webm');
+    assert.match(download.suggestedFilename(), /^phantom-turn-\d{8}T\d{6}Z\.webm$/);
     const film = (await bytesOf(download)).toString('base64');
     const view = encodeURIComponent(JSON.stringify({ kind: '3d', size_px: [640, 480] })); // nobody has moved the camera
     const still = async (color) => {
@@ -309,6 +333,56 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     assert.ok(same < 4 && other > 2 * same, `${same} off the scene as it was ordered, ${other} off the later one`);
     await dialog.getByRole('button', { name: 'Another film' }).click();
     await dialog.getByRole('radio', { name: 'quarter' }).waitFor();
+    assert.deepEqual(world.errors, []);
+    await page.context().close();
+  });
+
+  once('a film that is cancelled while it is ordered is not made, and one whose server does not answer for a moment is', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`rooms/${room}`);
+    await full(page, 1);
+    await menu(page, /Film of a turn/);
+    const dialog = page.getByRole('dialog', { name: 'Film of a turn' });
+    await dialog.getByRole('spinbutton', { name: 'Length' }).fill('1');
+    await dialog.getByRole('spinbutton', { name: 'Length' }).press('Tab');
+    await dialog.getByText('24 pictures of the scene', { exact: false }).waitFor();
+    const orders = held(page, /\/rooms\/[^/]+\/video$/);
+    await orders.isSet;
+    const make = dialog.getByRole('button', { name: 'Make the film' });
+    await make.press('Enter');
+    await dialog.getByRole('button', { name: 'Cancel', exact: true }).press('Enter');
+    await make.waitFor();
+    const answers = (method, part) => page.waitForResponse((one) => one.request().method() === method && part.test(one.url()));
+    const [ended] = await Promise.all([answers('DELETE', isJob), orders.letGo()]);
+    assert.equal((await ended.json()).state, 'cancelled');
+    assert.equal(await make.count(), 1, 'nothing goes on on the page');
+
+    const ordered = answers('POST', /\/video$/);
+    let nUnanswered = 0;
+    let isAnswered = false;
+    await page.route(isJob, (route) => {
+      if (isAnswered || route.request().method() !== 'GET') return route.continue();
+      nUnanswered++;
+      return nUnanswered % 2 ? route.abort() : route.fulfill({ status: 503, body: '' });
+    });
+    await make.press('Enter');
+    const { id } = await (await ordered).json();
+    await dialog.getByRole('alert').getByText('The server does not answer now: it is asked again.').waitFor();
+    while (nUnanswered < 3) await page.waitForRequest(isJob);
+    assert.deepEqual(await axe(page), []);
+    isAnswered = true;
+    await dialog.getByRole('button', { name: 'Save the film' }).waitFor({ timeout: 120000 });
+    assert.equal(await dialog.getByRole('alert').count(), 0);
+    assert.equal((await call(`${world.daemon.url}/api/v1/jobs/${id}`)).json.state, 'done');
+    await page.route(/\/jobs\/[^/]+\/video$/, (route) =>
+      route.fulfill({ status: 404, json: { status: 404, detail: 'the film of the job is not kept any more' } }),
+    );
+    await dialog.getByRole('button', { name: 'Save the film' }).press('Enter');
+    await dialog.getByRole('alert').getByText('The server does not keep this film any more: have it made again.').waitFor();
+    await shoot(page, 'film-gone');
+    await dialog.getByRole('button', { name: 'Another film' }).press('Enter');
+    await make.waitFor();
+    assert.equal(await dialog.getByRole('alert').count(), 0);
     assert.deepEqual(world.errors, []);
     await page.context().close();
   });

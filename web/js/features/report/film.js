@@ -26,64 +26,89 @@ function turningView({ room, ui }) {
   return isOne(active) ? active : (room.views.find((view) => view.isOpen.value && isOne(view)) ?? room.views.find(isOne) ?? null);
 }
 
-/** Asks for the job until it has ended. */
-async function follow({ api, clock, ui }, state) {
-  while (state.job.value && ['queued', 'running'].includes(state.job.value.state)) {
+const isOpen = (job) => ['queued', 'running'].includes(job.state);
+const isGone = ({ status }) => status >= 400 && status < 500 && status !== 429;
+const goneWords = (problem) => (problem.status === 404 ? say.filmGone : problem.message); // the server's are about a job, which people do not know
+
+/** Asks for the job until it has ended, or another one is this state's. What was not answered is asked again. */
+async function follow({ api, clock, ui }, state, id) {
+  const isOurs = () => state.job.value?.id === id;
+  while (isOurs() && isOpen(state.job.value)) {
     await new Promise((done) => clock.setTimeout(done, pollMs));
-    const { id } = state.job.value ?? {};
-    if (!id) return;
-    const job = await api.job(id);
-    if (state.job.value?.id !== id) return;
-    state.job.value = job;
-    if (job.state === 'failed') state.why.value = job.problem?.detail ?? say.filmFailed;
+    let job = null;
+    try {
+      job = isOurs() ? await api.job(id) : null;
+    } catch (problem) {
+      if (!isOurs()) return;
+      state.why.value = isGone(problem) ? goneWords(problem) : say.filmUnanswered;
+      if (isGone(problem)) state.job.value = null;
+    }
+    if (!job || !isOurs()) continue;
+    state.why.value = job.state === 'failed' ? say.filmFailed({ why: job.problem?.detail ?? '' }) : '';
+    state.job.value = isOpen(job) || job.state === 'done' ? job : null;
     if (job.state === 'done' && ui.popover.value !== 'film') ui.notify('ok', say.filmMade, 'film');
   }
-  if (state.job.value?.state !== 'done') state.job.value = null;
 }
+
+const isNameable = ({ room }) => room.seesIdentity.value && shownPatient(room.plan.value, room.scene.value);
 
 async function make(world, state) {
   const { room, api } = world;
   const { degrees, isReversed, seconds, fps, width, isNamed } = state.order.value;
   const document = turningView(world)?.document.value;
+  const ordered = { state: 'queued', percent: 0 }; // until the server has given it an id
+  const isOurs = () => state.job.value === ordered;
   state.why.value = '';
+  state.order.value = { ...state.order.value, isNamed: false }; // asked anew for each film
+  state.job.value = ordered;
   try {
-    state.job.value = { state: 'queued', percent: 0 };
-    state.job.value = await api.call('POST', `rooms/${room.id}/video`, {
+    const job = await api.call('POST', `rooms/${room.id}/video`, {
       more: ofMember(room.identity),
       body: {
         view: { ...document, size_px: sizes[width] },
         degrees: isReversed ? -degrees : degrees,
         seconds,
         fps,
-        identity: isNamed,
+        identity: Boolean(isNamed && isNameable(world)),
       },
     });
-    await follow(world, state);
+    if (!isOurs()) return void (await api.cancelJob(job.id)); // cancelled meanwhile
+    state.job.value = job;
+    await follow(world, state, job.id);
   } catch (problem) {
+    if (!isOurs()) return;
     state.job.value = null;
-    state.why.value = problem.message;
+    state.why.value = say.filmFailed({ why: problem.message });
   }
 }
 
 async function cancel({ api }, state) {
-  const { id } = state.job.value ?? {};
-  state.job.value = null;
+  const job = state.job.value;
   try {
-    if (id) await api.cancelJob(id);
+    if (job?.id) await api.cancelJob(job.id);
   } catch (problem) {
-    state.why.value = problem.message;
+    if (!isGone(problem)) {
+      state.why.value = say.filmNotCancelled;
+      return;
+    }
   }
+  if (state.job.value === job || (job.id && state.job.value?.id === job.id)) state.job.value = null;
 }
 
+/** The file is named as the server names it: by the time of the order, in UTC. */
+const fileName = (plan, job) => `${plan}-turn-${new Date(job.created_ms).toISOString().replace(/[-:]|\.\d+/g, '')}.webm`;
+
 async function save({ api, room }, state) {
+  const job = state.job.value;
+  state.why.value = '';
   try {
     const [{ saveBlob }, film] = await Promise.all([
       import('../../room/exports.js'),
-      api.call('GET', `jobs/${state.job.value.id}/video`, { isPicture: true }),
+      api.call('GET', `jobs/${job.id}/video`, { isPicture: true, more: ofMember(room.identity) }),
     ]);
-    saveBlob(`${room.planId.value}-turn.webm`, film);
+    saveBlob(fileName(job.plan, job), film);
   } catch (problem) {
-    state.why.value = problem.message;
+    state.why.value = goneWords(problem);
   }
 }
 
@@ -94,23 +119,21 @@ const kept = (run) => (event) => {
 };
 
 function form(world, state) {
-  const { room } = world;
   const order = state.order.value;
   const set = (change) => {
-    state.order.value = { ...order, ...change };
+    state.order.value = { ...state.order.value, ...change };
   };
   const options = (words) => Object.entries(words).map(([id, word]) => [id, word]);
   const asRates = [12, 24, 30].map((n) => [String(n), String(n)]);
   const asSizes = Object.entries(sizes).map(([id, [w, h]]) => [id, `${w} × ${h}`]);
   const hasView = Boolean(turningView(world));
-  const isNameable = room.seesIdentity.value && shownPatient(room.plan.value, room.scene.value);
   return html`<div class="film-fields">
       <span class="lbl">${say.filmTurn}</span>${segment(say.filmTurn, options(turns).reverse(), String(order.degrees), false, (id) => set({ degrees: Number(id) }))}
       <span></span>${checkbox(say.filmReversed, order.isReversed, false, (isReversed) => set({ isReversed }))}
       <span class="lbl">${say.filmLength}</span>${numberField(say.filmLength, order.seconds, 's', false, (seconds) => set({ seconds: Math.min(most.seconds, Math.max(1, seconds)) }))}
       <span class="lbl">${say.filmRate}</span>${segment(say.filmRate, asRates, String(order.fps), false, (id) => set({ fps: Number(id) }))}
       <span class="lbl">${say.filmSize}</span>${segment(say.filmSize, asSizes, String(order.width), false, (id) => set({ width: Number(id) }))}
-      ${isNameable ? html`<span></span>${checkbox(say.withIdentity, order.isNamed, false, (isNamed) => set({ isNamed }))}` : nothing}</div>
+      ${isNameable(world) ? html`<span></span>${checkbox(say.withIdentity, order.isNamed, false, (isNamed) => set({ isNamed }))}` : nothing}</div>
     <p class="note">${hasView ? say.filmAbout({ n: Math.round(order.seconds * order.fps) }) : say.filmNoView}</p>
     <div class="buttons"><button class="primary" ?disabled=${!hasView} @click=${kept(() => make(world, state))}>${icon('reset')}<span>${say.filmMake}</span></button></div>`;
 }
@@ -127,6 +150,7 @@ function running(world, state) {
 function done(world, state) {
   const another = () => {
     state.job.value = null;
+    state.why.value = '';
   };
   return html`<p role="status">${say.filmMade}</p>
     <div class="buttons"><button class="primary" @click=${() => save(world, state)}>${icon('download')}<span>${say.filmSave}</span></button>
