@@ -105,6 +105,17 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
     return true;
 }
 
+/* The error of a component: in a file of its own, or in that of the values. */
+static void list_dose_error(struct loading *loading, const struct plan_file_component *component, size_t i, size_t c)
+{
+    const struct part_reader *reader = part_reader_of(&loading->folder, component->path);
+    if (component->error[0])
+        list_part(loading, PART_KIND_DOSE_ERROR, i, c, component->error,
+                  part_reader_of(&loading->folder, component->error));
+    else if (reader->grid && reader->grid->has_error && reader->grid->has_error(&loading->folder, component->path))
+        list_part(loading, PART_KIND_DOSE_ERROR, i, c, component->path, reader);
+}
+
 static bool list_dose(struct loading *loading, size_t i, struct error *err)
 {
     const struct plan_file_dose *dose = &loading->file->doses[i];
@@ -121,9 +132,7 @@ static bool list_dose(struct loading *loading, size_t i, struct error *err)
             return refuse_dicom(loading, path, "dose", err);
     }
     for (size_t c = 0; is_readable && c < dose->n_components; c++)
-        if (dose->components[c].error[0])
-            list_part(loading, PART_KIND_DOSE_ERROR, i, c, dose->components[c].error,
-                      part_reader_of(&loading->folder, dose->components[c].error));
+        list_dose_error(loading, &dose->components[c], i, c);
     if (is_readable && dose->mask[0])
         list_part(loading, PART_KIND_DOSE_MASK, i, 0, dose->mask, part_reader_of(&loading->folder, dose->mask));
     return true;

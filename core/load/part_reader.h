@@ -38,6 +38,10 @@ struct grid_reader {
     bool (*peek)(const struct folder *folder, const char *name, struct grid_facts *facts, struct error *err);
     struct volume *(*read)(const struct folder *folder, const char *name, enum raw_use use, struct report *report,
                            struct error *err);
+    /* Reads the statistical errors that the file of a dose holds beside its values, and says whether there are any;
+     * NULL: the format has none. */
+    bool (*has_error)(const struct folder *folder, const char *name);
+    struct volume *(*read_error)(const struct folder *folder, const char *name, struct error *err);
     /* Reads a label map of several layers, with the names that the file gives; NULL: the format has neither. */
     bool (*read_layers)(const struct folder *folder, const char *name, struct nrrd_layers *layers,
                         struct report *report, struct error *err);

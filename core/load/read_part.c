@@ -107,10 +107,19 @@ static bool read_beside_dose(const struct loading *loading, struct part_reading 
     return read_grid(reader->grid, &loading->folder, reading, use);
 }
 
+static bool read_dose_error(const struct loading *loading, struct part_reading *reading)
+{
+    const struct grid_reader *grid = reading->reader->grid;
+    if (!grid || !grid->read_error)
+        return read_beside_dose(loading, reading, RAW_IMAGE);
+    reading->volume = grid->read_error(&loading->folder, reading->path, &reading->err);
+    return reading->volume != NULL;
+}
+
 bool plan_read_part(struct loading *loading, struct part_reading *reading)
 {
     switch (reading->kind) {
-    case PART_KIND_DOSE_ERROR: return read_beside_dose(loading, reading, RAW_IMAGE);
+    case PART_KIND_DOSE_ERROR: return read_dose_error(loading, reading);
     case PART_KIND_DOSE_MASK: return read_beside_dose(loading, reading, RAW_MASK);
     default: break;
     }

@@ -13,6 +13,7 @@
     X(part_sera_chd)      /* SERA's dose on planes */ \
     X(part_sera_curve)    /* SERA's dose over depth and radius along a beam */ \
     X(part_sera_settings) /* SERA's preferences: .rsc, .cmap, body_data.txt */ \
+    X(part_tally)         /* fields of Monte Carlo codes: .tally.json and the file that it names */ \
     X(part_pp)            /* tracks of seraMC */ \
     X(part_track_csv)     /* a table with the columns of tracks */ \
     X(part_dicom)

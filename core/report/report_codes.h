@@ -229,6 +229,8 @@
     X("dose.no-frame", "Nothing says that dose and image share a frame of reference.", "Check that they fit.") \
     X("dose.frame-differs", "A dose is in another frame of reference than the image.", \
       "It may be shifted: check that it fits.") \
+    X("dose.tally", "A dose is a field that a Monte Carlo code added up.", \
+      "Check axes, factor and the place of the largest value against the code's own plot.") \
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.") \
     X("beam.left-out", "A beam of a treatment plan cannot be placed in the patient, or is for setting up only.", \
       "It is not shown; see the line.") \
