@@ -143,6 +143,13 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     assert.equal((await call(`${world.daemon.url}/api/v1/rooms/${first}`)).json.name, 'Second look');
     await page.goto(world.daemon.url);
     await row.locator('.last-room', { hasText: 'Last room: Second look' }).waitFor();
+    const isBeside = ([sign, words]) => {
+      words.append(' and many more people'.repeat(10));
+      const isIt = sign.getBoundingClientRect().right <= words.getBoundingClientRect().left;
+      words.lastChild.remove();
+      return isIt;
+    };
+    assert.ok(await row.locator('.last-room .icon, .last-room span:has(> b)').evaluateAll(isBeside), 'the sign stands beside a long text');
     await page.keyboard.press('/');
     await page.keyboard.type('second l');
     await page.locator('.list-head', { hasText: '“second l”: 1 of' }).waitFor();

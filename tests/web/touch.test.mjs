@@ -139,6 +139,10 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
       await page.locator('[data-view="4"] .where').textContent(),
       new RegExp(`P ${String(Math.abs(point[1]).toFixed(1)).replace('.', '\\.')}|P .${Math.abs(point[1]).toFixed(1)}`),
     );
+    await page.setViewportSize({ width: 820, height: 1180 });
+    await page.waitForFunction(() => document.querySelector('.banner').clientWidth === 820);
+    const isWhole = (element) => element.scrollWidth <= element.clientWidth && element.scrollHeight <= element.clientHeight;
+    assert.ok(await page.locator('.plan-name h1 > span').first().evaluate(isWhole), 'the name of the plan, upright');
     await page.context().close();
   });
 

@@ -110,7 +110,7 @@ function lastRoom(state, plan, ownName) {
   const unfold = () => {
     state.unfolded.value = isUnfolded ? '' : plan.id;
   };
-  return html`<p class="last-room">${icon('people', 14)}<span>${say.lastRoom({ room: html`<b>${roomName(last, titleOf(plan))}</b>`, facts: roomFacts(last, ownName) })}</span>
+  return html`<p class="last-room"><span class="last-words">${icon('people', 14)}<span>${say.lastRoom({ room: html`<b>${roomName(last, titleOf(plan))}</b>`, facts: roomFacts(last, ownName) })}</span></span>
     <button class="as-text" aria-label=${say.newRoomOn({ plan: plan.name })} @click=${act(() => state.open(plan.id))}>${say.newRoom}</button>
     ${n > 0 ? html`<button class="as-text" aria-expanded=${isUnfolded} @click=${act(unfold)}>${say.olderRooms({ count: n >= 9 ? say.nineAndMore : number(n), n })}</button>` : nothing}</p>`;
 }
