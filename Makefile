@@ -219,10 +219,14 @@ $(B)/unit/test_unpack: | $(B)/beamroom-render
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: $(call obj,$(UNPACK_SRC))
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: private CORE_LIBS += $(UNPACK_LIBS)
 
+$(B)/fuzz/fuzz_paper: $(call obj,$(filter-out %/main.c,$(PRINTER_SRC)))
+$(B)/fuzz/fuzz_paper: private CORE_LIBS += $(PANGO_LIBS)
+
 # Programs whose calls of the system fail on demand (tests/faults/faults.h): what they define takes the place of libc's for all
 # libraries too (-rdynamic), and mem_new is led through it.
 FAULTS_HELP := $(call obj,$(addprefix tests/unit/,data_folder.c fake_renderer.c fleet_world.c made_chd.c made_dicom.c made_dose.c made_series.c oracle.c room_fake.c rt_files.c) $(UNPACK_SRC))
 $(faults_BIN): $(FAULTS_HELP)
+$(B)/faults/test_paper: $(call obj,server/printer/order.c)
 $(faults_BIN): private LDFLAGS += -rdynamic -Wl,--wrap=mem_new,--wrap=mem_copy_text
 $(faults_BIN): private CORE_LIBS += $(UNPACK_LIBS)
 # an exception passes through operator new; the sanitizer must not check what stands before it

@@ -6,11 +6,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "server/printer/draw.h"
+#include "server/printer/order.h"
 #include "server/renderer/confine.h"
 
-static bool read_all(void *to, size_t n)
+static bool read_all(void *context, void *to, size_t n)
 {
+    (void)context;
     for (size_t done = 0; done < n;) {
         const ssize_t got = read(PRINTER_SOCKET, (char *)to + done, n - done);
         if (got < 0 && errno == EINTR)
@@ -35,20 +36,6 @@ static bool write_all(const unsigned char *from, size_t n)
     return true;
 }
 
-static bool read_pictures(const struct printer_head *head, struct drawing_input *input, unsigned char *pictures[])
-{
-    for (int i = 0; i < PRINTER_PICTURES; i++) {
-        if (!head->n_pictures[i])
-            continue;
-        pictures[i] = head->n_pictures[i] <= PRINTER_MAX_PICTURE ? malloc(head->n_pictures[i]) : NULL;
-        if (!pictures[i] || !read_all(pictures[i], head->n_pictures[i]))
-            return false;
-        input->pictures[i] = pictures[i];
-        input->n_pictures[i] = head->n_pictures[i];
-    }
-    return true;
-}
-
 static int fail(const char *why)
 {
     (void)fprintf(stderr, "beamroom-paper: %s\n", why);
@@ -57,28 +44,16 @@ static int fail(const char *why)
 
 static int serve(void)
 {
-    struct printer_head head;
-    struct drawing_input input = { 0 };
-    unsigned char *pictures[PRINTER_PICTURES] = { NULL }, *pdf = NULL;
+    struct order order;
     const char *why = "what came in is not whole";
     size_t n = 0;
-    char *json = NULL;
-    cJSON *paper = NULL;
-    bool ok = read_all(&head, sizeof head) && head.magic == PRINTER_MAGIC && head.n_json <= PRINTER_MAX_JSON &&
-              (json = malloc((size_t)head.n_json + 1)) && read_all(json, head.n_json) &&
-              (paper = json_read(json, head.n_json, NULL)) && read_pictures(&head, &input, pictures);
-    if (ok) {
-        input.paper = paper;
-        input.is_letter = head.is_letter != 0;
-        pdf = draw_paper(&input, &n, &why);
-        ok = pdf && write_all(pdf, n);
-    }
-    cJSON_Delete(paper);
-    for (int i = 0; i < PRINTER_PICTURES; i++)
-        free(pictures[i]);
-    free(json);
+    unsigned char *pdf = order_read(&order, read_all, NULL) ? draw_paper(&order.input, &n, &why) : NULL;
+    const bool is_done = pdf && write_all(pdf, n);
+    if (pdf && !is_done)
+        why = "the PDF was not taken whole";
+    order_finish(&order);
     free(pdf);
-    return ok ? 0 : fail(why);
+    return is_done ? 0 : fail(why);
 }
 
 int main(int argc, char *argv[])
