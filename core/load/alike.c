@@ -8,6 +8,7 @@
 #include "core/base/mem.h"
 #include "core/load/part_names.h"
 #include "core/load/plan_ids.h"
+#include "core/plan/beam_doses.h"
 #include "core/plan/identity.h"
 
 enum { NAME_SIZE = 65, MOST = PLAN_MAX_BEAMS };
@@ -139,11 +140,17 @@ static int plan_rank(const struct plan *plan, const struct part_origin *origin)
     return origin->plan_uid[0] ? 3 : 1;
 }
 
-static int sum_rank(const struct dose *dose)
+static int sum_rank(const struct plan *plan, size_t index)
 {
-    static const char *const words[] = { "plan",     "several plans",    "plan overview",
+    /* at "every beam": doses of all beams of the plan, which add up to the plan's */
+    static const char *const words[] = { "plan",     "several plans",    "plan overview", "every beam",
                                          "fraction", "fraction session", "beam" };
+    const struct dose *dose = &plan->doses[index];
+    size_t all[PLAN_MAX_DOSES];
     int rank = 0;
+    if (plan->dose_origins[index].beam > 0 && strcmp(dose->per, "beam") == 0 &&
+        plan_beam_doses(plan, plan->dose_origins[index].treatment_plan, all) > 0)
+        return 3;
     while (rank < (int)(sizeof words / sizeof words[0]) && strcmp(dose->per, words[rank]) != 0)
         rank++;
     return rank;
@@ -156,8 +163,9 @@ static bool is_before(const struct plan *plan, size_t a, size_t b)
     const struct part_origin *of_a = &plan->dose_origins[a], *of_b = &plan->dose_origins[b];
     int by_patient = (of_a->patient >= 0 && of_a->patient != shown) - (of_b->patient >= 0 && of_b->patient != shown);
     int by_plan = plan_rank(plan, of_a) - plan_rank(plan, of_b);
-    int by_sum = sum_rank(&plan->doses[a]) - sum_rank(&plan->doses[b]);
-    return by_patient ? by_patient < 0 : by_plan ? by_plan < 0 : by_sum < 0;
+    int by_sum = sum_rank(plan, a) - sum_rank(plan, b);
+    bool is_beam_before = of_a->beam > 0 && of_a->treatment_plan == of_b->treatment_plan && of_a->beam < of_b->beam;
+    return by_patient ? by_patient < 0 : by_plan ? by_plan < 0 : by_sum ? by_sum < 0 : is_beam_before;
 }
 
 void plan_order_doses(struct plan *plan)

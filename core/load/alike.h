@@ -9,5 +9,6 @@ void plan_name_alike_doses(struct plan *plan);
 void plan_name_alike_beams(struct plan *plan);
 
 /* Sorts doses: those of the patient that is shown first; then by treatment plan: the one that is shown first, none
- * stated, others, one that is not here; then summed over the plan, a fraction, a beam. Equal ones keep their order. */
+ * stated, others, one that is not here; then summed over the plan, its
+ * beams where each has a dose (by the beams' order), a fraction, a beam. Equal ones keep their order. */
 void plan_order_doses(struct plan *plan);

@@ -473,6 +473,7 @@ static void fields_origin(struct fields *fields, struct part_origin *origin, con
 {
     fields_index(fields, &origin->patient, plan->n_patients);
     fields_index(fields, &origin->treatment_plan, plan->n_treatment_plans);
+    fields_size(fields, &origin->beam, PLAN_MAX_BEAMS);
     fields_text(fields, origin->frame_uid, sizeof origin->frame_uid);
     fields_text(fields, origin->study_uid, sizeof origin->study_uid);
     fields_text(fields, origin->series_uid, sizeof origin->series_uid);
@@ -507,6 +508,7 @@ static void fields_treatment_plan(struct fields *fields, struct treatment_plan *
     fields_text(fields, treatment->review_date, sizeof treatment->review_date);
     fields_text(fields, treatment->reviewer, sizeof treatment->reviewer);
     fields_bytes(fields, &treatment->n_fractions, sizeof treatment->n_fractions);
+    fields_size(fields, &treatment->n_beams, PLAN_MAX_BEAMS);
     fields_number(fields, &treatment->prescription_gy);
     fields_index(fields, &treatment->patient, plan->n_patients);
 }

@@ -4,7 +4,7 @@
 #include "core/plan/plan.h"
 
 enum {
-    PLAN_CACHE_FORMAT = 12,
+    PLAN_CACHE_FORMAT = 13,
     FIELDS_MAX_VOLUMES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (2 * DOSE_N_QUANTITIES + 1)
 };
 

@@ -50,6 +50,7 @@ static int treatment_plan_of(const struct plan *plan, const char *uid)
 void origin_treatment_plan(const struct rtplan *from, int patient, struct treatment_plan *added)
 {
     *added = (struct treatment_plan){ .n_fractions = from->n_fractions,
+                                      .n_beams = from->n_treating,
                                       .prescription_gy = from->target_dose_gy,
                                       .patient = patient };
     snprintf(added->uid, sizeof added->uid, "%s", from->uid);
@@ -93,6 +94,21 @@ static void frame_of_plan(const struct loading *loading, const struct rtplan *pl
     snprintf(origin->frame_uid, sizeof origin->frame_uid, "%s", frame);
 }
 
+/* The place of a dose's only beam among those of its treatment plan, from 1; 0: it is of none or several, or unknown.
+ */
+static size_t beam_of_dose(const struct loading *loading, const struct rtdose *dose)
+{
+    if (strcmp(dose->summation, "BEAM") != 0 || dose->n_beams != 1 || !dose->plan_uid[0])
+        return 0;
+    for (size_t i = 0; i < loading->n_readings; i++) {
+        const struct rtplan *plan = loading->readings[i].rtplan;
+        for (size_t b = 0; plan && strcmp(plan->uid, dose->plan_uid) == 0 && b < plan->n_treating; b++)
+            if (plan->treating[b] == dose->beams[0])
+                return b + 1;
+    }
+    return 0;
+}
+
 static void origin_of_object(const struct loading *loading, const struct part_reading *reading,
                              const struct dicom_object *object, struct part_origin *origin)
 {
@@ -107,6 +123,7 @@ static void origin_of_object(const struct loading *loading, const struct part_re
     if (reading->kind == PART_KIND_DOSE) {
         snprintf(origin->plan_uid, sizeof origin->plan_uid, "%s", reading->rtdose.plan_uid);
         snprintf(origin->structs_uid, sizeof origin->structs_uid, "%s", reading->rtdose.structs_uid);
+        origin->beam = beam_of_dose(loading, &reading->rtdose);
     }
     if (reading->rtplan) {
         snprintf(origin->plan_uid, sizeof origin->plan_uid, "%s", reading->rtplan->uid);

@@ -1,6 +1,7 @@
 #pragma once
 /* Whom and what a part of a plan belongs to, as its files say: patient, frame of reference, study, series, treatment
  * plan, structure set. Plain data, filled while loading. Judges nothing: core/plan/fit.h does. */
+#include <stddef.h>
 #include <stdint.h>
 
 #include "core/math/vec.h"
@@ -33,8 +34,9 @@ struct treatment_plan {
     char approval[17];                 /* "APPROVED", "UNAPPROVED", "REJECTED"; "" not stated */
     char review_date[9], reviewer[65]; /* "" not given */
     int64_t n_fractions;               /* planned; 0 not given */
-    double prescription_gy;            /* largest target prescription; NaN not given */
-    int patient;                       /* index in the plan's patients; -1 unknown */
+    size_t n_beams; /* for treatment, also those that cannot be placed; 0: none, or their numbers are not clear */
+    double prescription_gy; /* largest target prescription; NaN not given */
+    int patient;            /* index in the plan's patients; -1 unknown */
 };
 
 /* A rigid registration (REG) between two frames of reference. source: DICOM PS3.3 C.20.2. */
@@ -48,6 +50,7 @@ struct plan_registration {
 struct part_origin {
     int patient;        /* index in the plan's patients; -1: the files do not say */
     int treatment_plan; /* index in the plan's treatment plans that it belongs to or refers to; -1: none, or not here */
+    size_t beam; /* of a dose of one beam: 1.., its place among the treatment plan's beams; 0: of several, unknown */
     char frame_uid[ORIGIN_UID_SIZE];
     char study_uid[ORIGIN_UID_SIZE];
     char series_uid[ORIGIN_UID_SIZE];  /* an image's own; of regions the series they were drawn on */

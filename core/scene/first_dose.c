@@ -9,6 +9,7 @@
 
 #include "core/base/mem.h"
 #include "core/dose/weights.h"
+#include "core/plan/beam_doses.h"
 #include "core/plan/fit.h"
 #include "core/region/target.h"
 #include "dose_presets.h" /* generated from proto/dose_presets.json */
@@ -116,12 +117,31 @@ static void first_weights(const struct plan *plan, struct scene_dose_style *styl
              is_from_file ? "from the plan's files" : weights_presets[0].name);
 }
 
+/* Adds the doses of the other beams, where the first dose is of one beam and each beam of its plan has one. */
+static void first_sum(const struct plan *plan, struct scene_dose_style *style)
+{
+    size_t doses[PLAN_MAX_DOSES];
+    const size_t n =
+        plan->dose_origins[0].beam > 0 ? plan_beam_doses(plan, plan->dose_origins[0].treatment_plan, doses) : 0;
+    if (n < 2)
+        return;
+    style->sum = mem_new((n - 1) * sizeof *style->sum); /* at most PLAN_MAX_DOSES */
+    for (size_t i = 0; i < n; i++) {
+        if (doses[i] == 0)
+            continue;
+        struct scene_dose_part_entry *entry = &style->sum[style->n_sum++];
+        memcpy(entry->id, plan->doses[doses[i]].id, sizeof entry->id);
+        entry->value = scene_dose_part_default;
+    }
+}
+
 void scene_first_dose(const struct plan *plan, struct scene_dose_style *style)
 {
     first_levels(&plan->preferences, style);
     first_weights(plan, style);
     if (plan->n_doses == 0)
         return;
+    first_sum(plan, style);
     const struct dose *dose = &plan->doses[0];
     const struct dose_component *boron = dose_component_of(dose, DOSE_BORON);
     enum dose_quantity quantity = DOSE_TOTAL;
@@ -131,6 +151,6 @@ void scene_first_dose(const struct plan *plan, struct scene_dose_style *style)
         style->quantity = SCENE_DOSE_QUANTITY_WEIGHTED_TOTAL;
         quantity = DOSE_WEIGHTED_TOTAL;
     }
-    if (style->quantity != SCENE_DOSE_QUANTITY_WEIGHTED && dose->reference[quantity] > 0)
+    if (style->quantity != SCENE_DOSE_QUANTITY_WEIGHTED && style->n_sum == 0 && dose->reference[quantity] > 0)
         style->reference.kind = SCENE_DOSE_REFERENCE_KIND_FILE;
 }

@@ -3,7 +3,7 @@
 #include "core/plan/plan.h"
 #include "scene.h" /* generated from proto/scene.json */
 
-/* Fills quantity, weights, levels and reference of a style of defaults. Weights are those of the regions' files; where
- * none has any, those of the first preset, by the regions' names, as an example that weights_name says. A plan without
- * physical components has no weights. scene_finish frees them. */
+/* Fills quantity, sum, weights, levels and reference of a style of defaults. Doses of all beams of a plan are summed.
+ * Weights are those of the regions' files; where none has any, those of the first preset, by the regions' names, as an
+ * example that weights_name says. A plan without physical components has no weights. scene_finish frees them. */
 void scene_first_dose(const struct plan *plan, struct scene_dose_style *style);

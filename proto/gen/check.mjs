@@ -92,6 +92,11 @@ function checkField(field, { enums, references, objects, known, isMessage }, whe
     need(Object.hasOwn(references, field.names), where, `names "${field.names}", which is not among the references`);
     need(field.type === 'id' || field.type === 'map', where, 'only an id and the keys of a map can name something');
   }
+  need(
+    !field.removable || (field.type === 'map' && field.names !== undefined),
+    where,
+    'only entries of a map that names something are removable',
+  );
   checkDefault(field, enums, where);
 }
 

@@ -83,6 +83,7 @@ function fieldRow(f, structName, prefix) {
   if (f.type === 'enum') parts.push(`.words = &${prefix}_${f.enum}_words`);
   if (f.object) parts.push(`.object = &${prefix}_${f.object}_object`);
   if (f.names) parts.push(`.names = &${prefix}_${f.names}_reference`);
+  if (f.removable) parts.push('.is_removable = true');
   if (f.type === 'list')
     parts.push(
       `.max_items = ${f.max_items}`,

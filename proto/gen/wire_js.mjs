@@ -1,7 +1,7 @@
 // wire.js: the descriptions as data for the page; web/js/wire/check.js reads them.
 // Without the sentences "about", which are half of the text, units, spaces and names of list items, of which the page reads nothing, and the words "undo",
 // which are in undo_words.js.
-const unread = ['about', 'undo', 'unit', 'space', 'names'];
+const unread = ['about', 'undo', 'unit', 'space', 'names', 'removable'];
 const wordsOf = (enums) => Object.fromEntries(Object.entries(enums).map(([name, { values }]) => [name, values.map(([word]) => word)]));
 
 /** Words of enums and fields of objects, of a checked description of documents. */

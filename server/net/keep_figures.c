@@ -95,12 +95,12 @@ static void copy_list(cJSON *to, const cJSON *document, const char *name, const 
 static cJSON *describe_plan(const struct fleet_plan *plan)
 {
     static const char *const whole[] = {
-        "id", "name", "is_phantom", "note", "shown_patient", "shown_plan", "treatment_plans", NULL
+        "id", "name", "is_phantom", "note", "shown_patient", "shown_plan", "treatment_plans", "statement", NULL
     };
     static const char *const of_patient[] = { "masked", "has_conflict", NULL };
     static const char *const of_image[] = { "id", "name", "modality", "unit", "patient", NULL };
     static const char *const of_region[] = { "id", "name", "color", "is_target", "voxels", "volume_cm3", NULL };
-    static const char *const of_dose[] = { "id", "name", "unit", "per", "patient", "plan", NULL };
+    static const char *const of_dose[] = { "id", "name", "unit", "per", "beam", "patient", "plan", NULL };
     static const char *const of_beam[] = { "id", "name", "aperture_mm", NULL };
     cJSON *json = cJSON_CreateObject();
     copy_fields(json, plan->document, whole);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/plan/beam_doses.h"
 #include "core/scene/dose_scale.h"
 #include "core/scene/scene_probe.h"
 #include "server/renderer/answers.h"
@@ -120,6 +121,43 @@ static void add_levels(cJSON *json, const struct snapshot *snapshot, const struc
     }
 }
 
+/* The number of the beams whose doses the scene adds, where these are all of the treatment plan, once each; else 0. */
+static size_t n_beams_summed(const struct snapshot *snapshot)
+{
+    const struct plan *plan = snapshot->plan;
+    const struct dose_choice *choice = &snapshot->dose_choice;
+    size_t doses[PLAN_MAX_DOSES], n_found = 0,
+                                  n = plan_beam_doses(plan, plan->dose_origins[snapshot->dose].treatment_plan, doses);
+    if (!snapshot->has_dose_choice || n < 2 || choice->n_parts != n)
+        return 0;
+    for (size_t p = 0; p < n; p++)
+        for (size_t i = 0; i < n; i++)
+            n_found += choice->parts[p].dose == doses[i] && fabs(choice->parts[p].factor - 1) < 1e-9;
+    return n_found == n ? n : 0;
+}
+
+static const char *shown_name(const struct snapshot *snapshot, char name[DOSE_STATED_NAME_SIZE])
+{
+    size_t n = n_beams_summed(snapshot);
+    if (n == 0)
+        return snapshot->plan->doses[snapshot->dose].name;
+    snprintf(name, DOSE_STATED_NAME_SIZE, "Sum of the doses of all %zu beams", n);
+    return name;
+}
+
+/* "beam 1 of 2" of a dose of one beam; "" of the sum of all. */
+static const char *shown_per(const struct snapshot *snapshot, char per[FIT_PER_SIZE])
+{
+    const struct part_origin *origin = &snapshot->plan->dose_origins[snapshot->dose];
+    if (n_beams_summed(snapshot) > 0)
+        return "";
+    if (origin->beam == 0 || origin->treatment_plan < 0 || snapshot->dose_choice.n_parts > 1)
+        return snapshot->plan->doses[snapshot->dose].per;
+    snprintf(per, FIT_PER_SIZE, "beam %zu of %zu", origin->beam,
+             snapshot->plan->treatment_plans[origin->treatment_plan].n_beams);
+    return per;
+}
+
 /* Adds the basis that every read-out of a dose states beside its numbers. snapshot->dose >= 0. */
 void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale)
 {
@@ -133,8 +171,9 @@ void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct d
                                                                           : DOSE_SHOWN_QUANTITY,
                     snapshot->dose_choice.quantity, unit);
     cJSON_AddStringToObject(json, "id", dose->id);
-    cJSON_AddStringToObject(json, "name", dose->name);
-    cJSON_AddStringToObject(json, "per", is_whole ? "plan" : dose->per); /* fractions that are counted make the plan */
+    char name[DOSE_STATED_NAME_SIZE], of[FIT_PER_SIZE];
+    cJSON_AddStringToObject(json, "name", shown_name(snapshot, name));
+    cJSON_AddStringToObject(json, "per", is_whole ? "plan" : shown_per(snapshot, of)); /* counted fractions: the plan */
     cJSON_AddStringToObject(json, "quantity", scene_dose_quantity_words.words[style->quantity]);
     cJSON_AddStringToObject(json, "unit", unit);
     reason_add_json(json, "reason", scale->field ? NULL : scale->why.text);

@@ -49,7 +49,8 @@ struct field {
     const struct field_words *words;     /* enum */
     const struct field_object *object;   /* object, and the elements of a list or map */
     const struct field_reference *names; /* id, and the keys of a map: what of the plan they name; NULL: nothing */
-    size_t max_items;                    /* list, map */
+    bool is_removable;     /* map with names: an entry of the defaults may be absent; false: each is there */
+    size_t max_items;      /* list, map */
     const char *ascending; /* list: the number of its object that no entry has less of than the one before; or NULL */
     size_t count_offset;   /* list, map: of a size_t */
     size_t entry_size, value_offset; /* list, map: of one entry; of the object in it. A map's entry begins with its

@@ -12,15 +12,16 @@
 /* A part for which there is no memory is missing; callers that use the whole compare mem_n_refused. */
 static cJSON *complete_object(const struct field_object *object, const cJSON *defaults, cJSON *json);
 
-/* A map whose keys name things of the plan has an entry for each that defaults has one for. In other maps an entry that
- * was removed stays removed. Takes json, which is an object. */
+/* A map whose keys name things of the plan has an entry for each that defaults has one for, but where they are
+ * removable. In other maps an entry that was removed stays removed. Takes json, which is an object. */
 static cJSON *complete_map(const struct field *field, const cJSON *defaults, cJSON *json)
 {
+    const bool is_whole = field->names && !field->is_removable && defaults;
     cJSON *complete = cJSON_CreateObject();
     struct json_index given, fallbacks;
     json_index_init(&given, json);
     json_index_init(&fallbacks, defaults);
-    for (const cJSON *item = field->names && defaults ? defaults->child : NULL; item; item = item->next) {
+    for (const cJSON *item = is_whole ? defaults->child : NULL; item; item = item->next) {
         cJSON *entry = json_index_find(&given, item->string);
         if (entry)
             json_append(complete, /* keeps the name */

@@ -158,6 +158,7 @@ static cJSON *dose_object(const struct plan *plan, size_t index)
     json_add(object, "name", cJSON_CreateString(dose->name));
     json_add(object, "unit", cJSON_CreateString(dose->unit));
     json_add(object, "per", cJSON_CreateString(dose->per));
+    json_add(object, "beam", known((double)plan->dose_origins[index].beam));
     char why[FIT_WHY_SIZE];
     struct fit_words words;
     int image = fit_first_image(plan);

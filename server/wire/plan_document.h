@@ -43,7 +43,9 @@
  *     | null,  what a person has stated of whom the plan is of: core/plan/statement.h
  *   treatment_plans: [ {
  *     label, name, date, time, approval, review_date, reviewer, fractions | null, prescription_gy | null, patient,
- *     structs, is_structs_absent
+ *     structs, is_structs_absent,
+ *     beams | null,  number of beams for treatment
+ *     beam_doses: [id]  doses of single beams that add up to the plan's, by the beams' order; empty: not each has one
  *   } ],
  *   shown_patient, shown_plan: index in patients, in treatment_plans | null
  * }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/plan/beam_doses.h"
 #include "core/plan/identity.h"
 
 /* Distinct UIDs in the order of their first use: a UID is told by its place. */
@@ -220,6 +221,16 @@ static cJSON *date(const char *text)
     return cJSON_CreateString(out);
 }
 
+/* Ids of the doses of single beams that add up to the treatment plan's, by the beams' order. */
+static cJSON *beam_doses(const struct plan *plan, int treatment)
+{
+    size_t doses[PLAN_MAX_DOSES], n = plan_beam_doses(plan, treatment, doses);
+    cJSON *list = cJSON_CreateArray();
+    for (size_t i = 0; i < n; i++)
+        json_append(list, cJSON_CreateString(plan->doses[doses[i]].id));
+    return list;
+}
+
 static cJSON *treatment_plan_object(const struct plan *plan, const struct treatment_plan *treatment,
                                     const struct numbers *numbers)
 {
@@ -238,6 +249,9 @@ static cJSON *treatment_plan_object(const struct plan *plan, const struct treatm
     json_add(object, "patient", index_or_null(treatment->patient, plan->n_patients));
     json_add(object, "structs", structs);
     json_add(object, "is_structs_absent", cJSON_CreateBool(is_absent));
+    json_add(object, "beams",
+             treatment->n_beams > 0 ? cJSON_CreateNumber((double)treatment->n_beams) : cJSON_CreateNull());
+    json_add(object, "beam_doses", beam_doses(plan, (int)(treatment - plan->treatment_plans)));
     return object;
 }
 

@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { call, openPlan, startDaemon } from './daemon.mjs';
-import { putDose, putImages, putPlan, putStructs } from './made_dicom.mjs';
+import { putDose, putImages, putPlan, putStructs, putWhole } from './made_dicom.mjs';
 
 const anna = { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' },
   berta = { id: 'B-2002', name: 'Beta^Berta', birthDate: '19701231' };
@@ -61,6 +61,14 @@ before(async () => {
     putDose(folder, anna, { plan: '1.2.71', description: 'A' });
     put(folder);
   }
+  const folder = join(root, 'p-beams');
+  putWhole(folder, anna, { beams: ['Front', 'Back'] });
+  putDose(folder, anna, { plan: '1.2.71', summation: 'FRACTION', description: 'Whole' });
+  for (const [beam, uid] of [
+    [2, '1.2.82'],
+    [1, '1.2.83'],
+  ])
+    putDose(folder, anna, { plan: '1.2.71', summation: 'BEAM', beam, uid, file: `beam-${beam}.dcm` });
   daemon = await startDaemon({ plans: [root] });
   api = `${daemon.url}/api/v1`;
   for (const name of Object.keys(beside)) {
@@ -355,4 +363,33 @@ test('and no read-out nor snapshot of a room has anything of it, but the reason'
     if (isStranger) for (const answer of [dvh, dose, dosed, profile, coverage, kept, surface]) assert.equal(answer.reason, reason, name);
     if (name === 'unstated') assert.match(dose.fit_reason, /^Dose “B” is used with CT: the files do not say whether/);
   }
+});
+
+test('where each beam has a dose and nothing has the whole plan, a new room shows their sum, and says so', async () => {
+  await openPlan(daemon.url, 'p-beams');
+  const { doses, treatment_plans: treatments } = (await call(`${api}/plans/p-beams`)).json;
+  assert.deepEqual(
+    doses.map(({ per, beam }) => [per, beam]),
+    [
+      ['beam', 1],
+      ['beam', 2],
+      ['fraction', null],
+    ],
+  );
+  assert.deepEqual([treatments[0].beams, treatments[0].beam_doses], [2, doses.slice(0, 2).map(({ id }) => id)]);
+  const room = (await call(`${api}/rooms`, 'POST', { plan: 'p-beams' })).json.id;
+  const { dose } = (await call(`${api}/rooms/${room}/scene`)).json;
+  assert.deepEqual(dose.sum, { [doses[1].id]: { factor: 1 } });
+  const ask = async (path) => (await call(`${api}/plans/p-beams/${path}${path.includes('?') ? '&' : '?'}room=${room}`)).json;
+  const patch = (scene) => call(`${api}/rooms/${room}/scene`, 'PATCH', scene, { 'If-Match': '*' });
+  const expected = 0.1 * (1 + 14 / 4 + 14 / 4 + 9 / 4); // of one beam at the point, trilinear
+  const at = async () => {
+    const { value, name, per } = await ask('dose/probe?x=14&y=14&z=9');
+    return [Math.round(value * 1e6) / 1e6, name, per];
+  };
+  assert.deepEqual(await at(), [Math.round(2 * expected * 1e6) / 1e6, 'Sum of the doses of all 2 beams', '']);
+  assert.equal((await patch({ dose: { sum: { [doses[1].id]: null } } })).status, 200);
+  assert.deepEqual(await at(), [Math.round(expected * 1e6) / 1e6, doses[0].name, 'beam 1 of 2']);
+  assert.equal((await patch({ dose: { id: doses[2].id } })).status, 200);
+  assert.deepEqual(await at(), [Math.round(expected * 1e6) / 1e6, doses[2].name, 'fraction']);
 });

@@ -38,11 +38,9 @@ const dataSet = (elements) =>
   );
 
 const sequence = (tag, ...items) => [tag, 'SQ', items];
-const refer = (tag, sopClass, uid) =>
-  sequence(tag, [
-    [0x00081150, 'UI', classes + sopClass],
-    [0x00081155, 'UI', uid],
-  ]);
+const refer = (tag, sopClass, uid, more) =>
+  sequence(tag, [[0x00081150, 'UI', classes + sopClass], [0x00081155, 'UI', uid], ...(more ? [more] : [])]);
+const ofBeam = (number) => sequence(0x300c0020, [[0x300c0022, 'IS', 1], sequence(0x300c0004, [[0x300c0006, 'IS', number]])]);
 
 /** The bytes of a file. */
 export const dicomFile = (elements) =>
@@ -127,7 +125,7 @@ export function putStructs(
   );
 }
 
-/** A plan with one beam from the front. */
+/** A plan with a beam from the front, or several: `beams` has their names. */
 export function putPlan(
   folder,
   owner,
@@ -139,6 +137,7 @@ export function putPlan(
     date = '20261101',
     file = 'plan.dcm',
     beam = 'Front',
+    beams = [beam],
     isocenter = '14\\14\\9',
   } = {},
 ) {
@@ -153,17 +152,20 @@ export function putPlan(
       [0x300a0002, 'SH', label],
       [0x300a0006, 'DA', date],
       [0x300e0002, 'CS', approval],
-      sequence(0x300a00b0, [[0x300a00b4, 'DS', 1000], [0x300a00c0, 'IS', 1], [0x300a00c2, 'LO', beam], points]),
+      sequence(
+        0x300a00b0,
+        ...beams.map((name, n) => [[0x300a00b4, 'DS', 1000], [0x300a00c0, 'IS', n + 1], [0x300a00c2, 'LO', name], points]),
+      ),
       refer(0x300c0060, '481.3', structs),
     ]),
   );
 }
 
-/** 8 x 8 x 6 voxels of 4 mm from the origin on, values 0.1 Gy times 1 + i + j + k. plan: SOP Instance UID of the plan that it refers to. */
+/** 8 x 8 x 6 voxels of 4 mm from the origin on, values 0.1 Gy times 1 + i + j + k. plan: SOP Instance UID of the plan that it refers to; beam: number of its beam. */
 export function putDose(
   folder,
   owner,
-  { uid = '1.2.81', plan, summation = 'PLAN', units = 'GY', file = 'dose.dcm', description, origin = '0\\0\\0' } = {},
+  { uid = '1.2.81', plan, summation = 'PLAN', units = 'GY', file = 'dose.dcm', description, origin = '0\\0\\0', beam } = {},
 ) {
   const pixels = Buffer.alloc(2 * 8 * 8 * 6);
   for (let k = 0, at = 0; k < 6; k++)
@@ -183,7 +185,7 @@ export function putDose(
       [0x3004000a, 'CS', summation],
       [0x3004000c, 'DS', '0\\4\\8\\12\\16\\20'],
       [0x3004000e, 'DS', '0.1'],
-      ...(plan ? [refer(0x300c0002, '481.5', plan)] : []),
+      ...(plan ? [refer(0x300c0002, '481.5', plan, beam && ofBeam(beam))] : []),
       [0x7fe00010, 'OW', pixels],
     ]),
   );

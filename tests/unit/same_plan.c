@@ -8,10 +8,10 @@
  * cache that loses it. */
 #define IS_COMPARED_UP_TO(type, bytes) \
     _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
-IS_COMPARED_UP_TO(struct plan, 1256968);
-IS_COMPARED_UP_TO(struct part_origin, 984);
+IS_COMPARED_UP_TO(struct plan, 1257872);
+IS_COMPARED_UP_TO(struct part_origin, 992);
 IS_COMPARED_UP_TO(struct plan_patient, 422);
-IS_COMPARED_UP_TO(struct treatment_plan, 408);
+IS_COMPARED_UP_TO(struct treatment_plan, 416);
 IS_COMPARED_UP_TO(struct plan_registration, 240);
 IS_COMPARED_UP_TO(struct plan_image, 248);
 IS_COMPARED_UP_TO(struct plan_preferences, 1296);
@@ -277,6 +277,7 @@ static void same_origin(const struct part_origin *a, const struct part_origin *b
 {
     assert_int_equal(a->patient, b->patient);
     assert_int_equal(a->treatment_plan, b->treatment_plan);
+    assert_int_equal(a->beam, b->beam);
     assert_string_equal(a->frame_uid, b->frame_uid);
     assert_string_equal(a->study_uid, b->study_uid);
     assert_string_equal(a->series_uid, b->series_uid);
@@ -310,6 +311,7 @@ static void same_treatment_plans(const struct plan *found, const struct plan *ex
         const struct treatment_plan *a = &found->treatment_plans[i], *b = &expected->treatment_plans[i];
         assert_string_equal(a->uid, b->uid);
         assert_string_equal(a->structs_uid, b->structs_uid);
+        assert_int_equal(a->n_beams, b->n_beams);
         assert_string_equal(a->label, b->label);
         assert_string_equal(a->name, b->name);
         assert_string_equal(a->date, b->date);

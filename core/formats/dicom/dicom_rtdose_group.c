@@ -278,7 +278,8 @@ static void report_beams(const struct grouping *grouping, size_t n_beam_doses, b
 {
     if (n_beam_doses > 1 && !has_plan_dose)
         report_add(grouping->report, REPORT_NOTE, "dose.not-summed", grouping->where,
-                   "%zu doses are of single beams and stand one beside the other; they were not added.", n_beam_doses);
+                   "%zu doses are of single beams and stand one beside the other; no file has their sum.",
+                   n_beam_doses);
 }
 
 size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name beam_name, void *context,

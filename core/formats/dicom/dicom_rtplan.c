@@ -341,6 +341,29 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
 
 /* ---- the whole plan --------------------------------------------------------------------------------------------- */
 
+/* Lists the numbers of the beams that treat. */
+static void list_treating(const struct reading *reading, uint32_t sequence, size_t n)
+{
+    struct rtplan *plan = reading->plan;
+    for (size_t i = 0; i < n; i++) {
+        const struct dicom_item *item = dicom_item_at(reading->root, sequence, i);
+        int64_t number;
+        char type[17];
+        bool is_double = false;
+        if (dicom_text(item, DELIVERY_TYPE, type, sizeof type) && strcmp(type, "SETUP") == 0)
+            continue;
+        if (!dicom_integer(item, BEAM_NUMBER, &number))
+            number = (int64_t)i + 1;
+        for (size_t o = 0; o < plan->n_treating; o++)
+            is_double |= plan->treating[o] == number;
+        if (is_double || plan->n_treating == RTPLAN_MAX_BEAMS) {
+            plan->n_treating = 0;
+            return;
+        }
+        plan->treating[plan->n_treating++] = number;
+    }
+}
+
 static bool read_beams(const struct reading *reading, struct error *err)
 {
     struct rtplan *plan = reading->plan;
@@ -350,6 +373,7 @@ static bool read_beams(const struct reading *reading, struct error *err)
     plan->beams = mem_array(n < RTPLAN_MAX_BEAMS ? n : RTPLAN_MAX_BEAMS, sizeof *plan->beams, UINT64_MAX, err);
     if (!plan->beams)
         return false;
+    list_treating(reading, sequence, n);
     for (size_t i = 0; i < n; i++) {
         if (plan->n_beams >= RTPLAN_MAX_BEAMS) {
             report_add(reading->report, REPORT_WARNING, "beam.left-out", reading->where,

@@ -20,6 +20,10 @@ struct rtplan {
     double target_dose_gy;             /* the largest target prescription; NaN if there is none */
     struct beam *beams;
     size_t n_beams;
+    /* Numbers of all beams for treatment in the file's order, also of those that cannot be placed. 0: none, more than
+     * RTPLAN_MAX_BEAMS, or two of one number. */
+    int64_t treating[RTPLAN_MAX_BEAMS];
+    size_t n_treating;
 };
 
 /* Reads a plan for photons, electrons or ions. A beam that cannot be placed (no isocentre, no control point, a

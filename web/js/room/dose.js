@@ -88,22 +88,33 @@ export const summedDoses = (plan, scene) => {
   const shown = shownDose(plan, scene);
   return [shown, ...plan.doses.filter((dose) => dose !== shown && dose.id in scene.dose.sum)].filter(Boolean);
 };
+/** The number of a treatment plan's beams, where the doses shown are those of all, once each; else 0. */
+function beamsSummed(plan, scene) {
+  const parts = summedDoses(plan, scene);
+  const all = plan.treatmentPlans?.[parts[0]?.plan]?.beam_doses ?? [];
+  const isOnce = ({ id }, n) => all.includes(id) && (n === 0 || scene.dose.sum[id].factor === scene.dose.factor);
+  return parts.length > 1 && parts.length === all.length && parts.every(isOnce) ? all.length : 0;
+}
+
 /** True if anything of the dose is switched on. */
 export const isOn = ({ dose }) =>
   dose.wash.visible || dose.lines.visible || dose.surfaces.visible || dose.coverage.visible || dose.compare.mode !== 'none';
 
 // ---- patches ------------------------------------------------------------------------------------------------------------
 
-/** Shows another dose, with a quantity that it has. What stands in a unit of dose keeps its worth: a level of 30 Gy is not 30 cGy then. */
+/** Shows another dose, with a quantity that it has; one that is chosen from among those of all beams stands alone. What stands in a unit of dose
+ * keeps its worth: a level of 30 Gy is not 30 cGy then. */
 export function choosePatch(plan, scene, dose) {
-  const patch = unitPatch(scene, unitFactor(shownDose(plan, scene)?.unit, dose.unit));
+  const shown = shownDose(plan, scene);
+  const patch = unitPatch(scene, unitFactor(shown?.unit, dose.unit));
+  const left = dose !== shown && beamsSummed(plan, scene) ? Object.keys(scene.dose.sum) : [dose.id].filter((id) => id in scene.dose.sum);
   return {
     ...patch,
     dose: {
       ...patch.dose,
       id: dose.id,
       quantity: quantityFor(scene, dose),
-      ...(dose.id in scene.dose.sum && { sum: { [dose.id]: null } }),
+      ...(left.length && { sum: Object.fromEntries(left.map((id) => [id, null])) }),
     },
   };
 }
@@ -149,6 +160,13 @@ function perWords(per, factor) {
   return ` ${what ? say.forTimes({ n, what }) : say.forTimesFile({ n })}`;
 }
 
+/** "sum of the doses of 2 beams", "dose of beam 1 of 2", "sum of 3 doses". */
+function partsWords(plan, parts, ofBeams) {
+  if (parts.length > 1) return ofBeams ? say.sumOfBeams({ n: ofBeams }) : say.sumOf({ n: parts.length });
+  const all = plan.treatmentPlans?.[parts[0].plan]?.beams;
+  return parts[0].beam && all ? say.doseOfBeam({ n: parts[0].beam, all }) : '';
+}
+
 /** "Gy(w) per 250 kW-min · blood 15 ppm · weights: BPA example · isodose as brain": what stands behind every number of dose. */
 export function basisParts(plan, scene) {
   const dose = shownDose(plan, scene);
@@ -156,15 +174,18 @@ export function basisParts(plan, scene) {
   const { quantity, factor, blood_ppm: ppm, weights_name: set, tissue } = scene.dose;
   const parts = summedDoses(plan, scene);
   const missing = [...new Set(parts.flatMap((part) => missingOf(part, quantity)))];
+  const ofBeams = beamsSummed(plan, scene);
+  const ofParts = partsWords(plan, parts, ofBeams);
+  const isOfBeams = ofBeams > 0 || (parts.length === 1 && Boolean(ofParts));
   return {
     unit: unitOf(dose, quantity),
     rest: [
-      perWords(dose.per, factor),
+      perWords(isOfBeams ? '' : dose.per, factor),
       quantity === 'weighted' ? '' : quantityWithin(quantity),
       dependsOnBlood(dose, quantity) ? say.bloodPpm({ n: number(ppm, ppm % 1 ? 1 : 0) }) : '',
       isWeighted(quantity) ? (set ? say.weightsOf({ name: set }) : say.weightsEdited) : '',
       tissue && (isWeighted(quantity) || dependsOnBlood(dose, quantity)) ? say.isodoseAs({ region: regionName(plan, tissue) }) : '',
-      parts.length > 1 ? say.sumOf({ n: parts.length }) : '',
+      ofParts,
       missingWords(missing),
     ],
   };

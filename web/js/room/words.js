@@ -80,6 +80,8 @@ export const say = sentences('room', {
   weightsEdited: 'weights: edited',
   isodoseAs: 'isodose as {region}',
   sumOf: 'sum of {n} doses',
+  sumOfBeams: 'sum of the doses of {n} beams',
+  doseOfBeam: 'dose of beam {n} of {all}',
   full: 'Full',
   live: 'Live',
   reduced: 'Reduced',

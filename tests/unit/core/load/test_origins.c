@@ -1,6 +1,9 @@
 /* Origins of a plan's parts: patients, frames of reference, treatment plans, structure sets. */
 #include "core/load/cache.h"
 #include "core/load/load.h"
+#include "core/plan/beam_doses.h"
+#include "core/scene/dose_choice.h"
+#include "core/scene/snapshot.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_parts.h"
@@ -359,12 +362,67 @@ static void the_first_dose_is_that_of_the_whole_plan(void **state)
     made_part_dose(folder, "e.dcm", &anna, &fraction);
     made_part_dose(folder, "f.dcm", &anna, &whole);
     struct plan *plan = open_plan(folder);
-    static const char *const files[] = { "f.dcm", "e.dcm", "c.dcm", "d.dcm", "b.dcm", "a.dcm" };
+    static const char *const files[] = { "f.dcm", "c.dcm", "d.dcm", "e.dcm", "b.dcm", "a.dcm" };
     assert_int_equal(plan->n_doses, 6);
     for (int d = 0; d < 6; d++)
         assert_string_equal(plan->dose_origins[d].path, files[d]);
     plan_destroy(plan);
     folder_remove(folder);
+}
+
+/* A plan of two beams with a dose of a fraction, and doses of beams: by the file's name, of beam `beams[i]`. */
+static struct plan *open_beam_doses(const int *beams, const char *const *scalings, size_t n, const char *folder)
+{
+    static const char *const files[] = { "b.dcm", "c.dcm", "d.dcm" }, *const uids[] = { "1.2.82", "1.2.83", "1.2.84" };
+    made_part_images(folder, "ct", &anna, "1.2.51", 2);
+    made_part_plan(folder, "plan.dcm", &anna,
+                   &(struct made_part_plan){ .uid = "1.2.71", .label = "P", .beams = { "B1", "B2" } });
+    made_part_dose(folder, "a.dcm", &anna,
+                   &(struct made_part_dose){ .uid = "1.2.81", .plan_uid = "1.2.71", .summation = "FRACTION" });
+    for (size_t i = 0; i < n; i++)
+        made_part_dose(folder, files[i], &anna,
+                       &(struct made_part_dose){ .uid = uids[i],
+                                                 .plan_uid = "1.2.71",
+                                                 .summation = "BEAM",
+                                                 .beam = beams[i],
+                                                 .scaling = scalings[i] });
+    return open_plan(folder);
+}
+
+static void doses_of_every_beam_are_summed_at_first_before_that_of_a_fraction(void **state)
+{
+    (void)state;
+    static const struct {
+        int beams[3];
+        size_t n;
+        const char *scalings[3], *first, *second; /* files; second: what a new room adds, or NULL */
+    } cases[] = {
+        { { 2, 1 }, 2, { "0.5", "0.25" }, "c.dcm", "b.dcm" },        /* by the beams' order */
+        { { 1 }, 1, { "0.5" }, "a.dcm", NULL },                      /* the second beam has none */
+        { { 1, 1 }, 2, { "0.5", "0.25" }, "a.dcm", NULL },           /* one beam has two, the other none */
+        { { 1, 2, 2 }, 3, { "0.5", "0.5", "0.25" }, "a.dcm", NULL }, /* two that might be the beam's */
+        { { 1, 3 }, 2, { "0.5", "0.25" }, "a.dcm", NULL },           /* of a beam that the plan does not have */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char folder[256];
+        size_t doses[PLAN_MAX_DOSES];
+        struct scene scene;
+        folder_make(folder);
+        struct plan *plan = open_beam_doses(cases[i].beams, cases[i].scalings, cases[i].n, folder);
+        assert_string_equal(plan->dose_origins[0].path, cases[i].first);
+        assert_int_equal(plan->treatment_plans[0].n_beams, 2);
+        assert_int_equal(plan_beam_doses(plan, 0, doses), cases[i].second ? 2 : 0);
+        scene_for_plan(plan, &scene);
+        assert_int_equal(scene.dose.n_sum, cases[i].second ? 1 : 0);
+        if (cases[i].second) {
+            int added = dose_index_of(plan, scene.dose.sum[0].id);
+            assert_string_equal(plan->dose_origins[added].path, cases[i].second);
+            assert_close(scene.dose.sum[0].value.factor, 1, 0);
+        }
+        scene_finish(&scene);
+        plan_destroy(plan);
+        folder_remove(folder);
+    }
 }
 
 int main(void)
@@ -380,6 +438,7 @@ int main(void)
         cmocka_unit_test(a_conflict_a_missing_identity_and_an_absent_structure_set_are_said),
         cmocka_unit_test(doses_and_beams_named_alike_are_told_apart_by_their_plans),
         cmocka_unit_test(the_first_dose_is_that_of_the_whole_plan),
+        cmocka_unit_test(doses_of_every_beam_are_summed_at_first_before_that_of_a_fraction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

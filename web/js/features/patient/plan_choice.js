@@ -55,7 +55,9 @@ export function planPatch(plan, scene, from, to) {
   const [dose] = dosesOf(plan, to);
   if (!dose) return null;
   const chosen = doseChoice(plan, scene, dose);
-  const sum = Object.fromEntries(Object.keys(scene.dose.sum).map((id) => [id, null])); // its summands are the other plan's
+  const beams = to.beam_doses?.includes(dose.id) ? to.beam_doses.filter((id) => id !== dose.id) : []; // together the plan's
+  const old = Object.keys(scene.dose.sum).map((id) => [id, null]); // the other plan's summands
+  const sum = Object.fromEntries([...old, ...beams.map((id) => [id, { factor: 1 }])]);
   const compare = scene.dose.compare.mode === 'none' ? {} : { compare: { mode: 'none' } };
   const reference = referencePatch(plan, scene, from, to, dose).reference;
   return {

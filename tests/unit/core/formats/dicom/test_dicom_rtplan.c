@@ -168,6 +168,7 @@ static void a_beam_that_cannot_be_placed_is_left_out(void **state)
         struct report report = { 0 };
         struct rtplan *plan = made_rtplan_read(&plans[i], &report);
         assert_int_equal(plan->n_beams, 0);
+        assert_int_equal(plan->n_treating, plans[i].is_setup ? 0 : 1); /* it treats all the same */
         assert_true(report_has(&report, "beam.left-out"));
         rtplan_destroy(plan);
         report_finish(&report);
@@ -389,6 +390,7 @@ static void more_than_the_written_limits_is_refused_or_left_out(void **state)
     struct rtplan *plan = rtplan_read(file.file, "x.dcm", &report, &err);
     assert_non_null(plan);
     assert_int_equal(plan->n_beams, RTPLAN_MAX_BEAMS);
+    assert_int_equal(plan->n_treating, 0); /* not known */
     assert_true(report_has(&report, "beam.left-out"));
     rtplan_destroy(plan);
     report_finish(&report);

@@ -107,6 +107,31 @@ test('the basis names unit, per what, blood, weights and tissue', () => {
   assert.match(basisWords(plan, dose({ id: 'two' })), /weights: edited · without nitrogen, fast neutron$/);
 });
 
+test('a dose of one beam says so, and so does the sum of those of all beams; one of them that is chosen stands alone', () => {
+  const beamDose = (n) => ({
+    id: `b${n}`,
+    name: `B${n}`,
+    unit: 'Gy',
+    per: 'beam',
+    beam: n,
+    plan: 0,
+    fit: 'same',
+    components: [part('total')],
+  });
+  const doses = [beamDose(1), beamDose(2), beamDose(3)];
+  const ofBeams = { doses, regions, treatmentPlans: [{ label: 'P', beams: 3, beam_doses: ['b1', 'b2', 'b3'] }] };
+  const scene = (id, sum, more = {}) =>
+    dose({ id, quantity: 'total', sum: Object.fromEntries(sum.map((other) => [other, { factor: 1 }])), ...more });
+  const all = scene('b1', ['b2', 'b3']);
+  assert.equal(basisWords(ofBeams, all), 'Gy · physical total · sum of the doses of 3 beams');
+  assert.equal(basisWords(ofBeams, scene('b2', [])), 'Gy · physical total · dose of beam 2 of 3');
+  assert.equal(basisWords(ofBeams, scene('b1', ['b2'])), 'Gy per beam · physical total · sum of 2 doses');
+  assert.equal(basisWords(ofBeams, scene('b1', ['b2', 'b3'], { factor: 2 })), 'Gy for 2 × beam · physical total · sum of 3 doses');
+  assert.deepEqual(choosePatch(ofBeams, all, doses[1]).dose, { id: 'b2', quantity: 'total', sum: { b2: null, b3: null } });
+  assert.deepEqual(choosePatch(ofBeams, all, doses[0]).dose, { id: 'b1', quantity: 'total' });
+  assert.deepEqual(choosePatch(ofBeams, scene('b1', ['b2']), doses[2]).dose, { id: 'b3', quantity: 'total' });
+});
+
 test('another dose is shown with a quantity that it has, and is no longer added to itself', () => {
   assert.deepEqual(choosePatch(plan, dose({ id: 'two', sum: { mc: { factor: 2 } } }), full), {
     dose: { id: 'mc', quantity: 'weighted', sum: { mc: null } },
