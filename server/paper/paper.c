@@ -51,6 +51,24 @@ static const char *plan_label(const struct paper *paper, const cJSON *treatment)
     return label && label[0] ? label : name && name[0] ? name : paper->source->plan;
 }
 
+/* "stated by Anna Weiss, 27 Nov 2026, 14:18", or why files of several patients count as of one; "" where nobody said.
+ */
+static cJSON *stated_of(const struct paper *paper)
+{
+    const cJSON *statement = cJSON_GetObjectItemCaseSensitive(paper->plan, "statement");
+    const char *kind = json_text(statement, "kind"), *state = json_text(statement, "state"),
+               *by = json_text(statement, "by"), *words = json_text(statement, "words");
+    char time[PAPER_TIME];
+    if (!kind || !state || strcmp(state, "used") != 0)
+        return written("");
+    (void)written_time(paper, json_number(statement, "time_ms", 0), time);
+    if (strcmp(kind, "one-person") != 0)
+        return written_format("stated by %.160s, %s", by ? by : "", time);
+    return written_format("the files of %d patients count as of one person, stated by %.160s, %s: %.300s",
+                          cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(paper->plan, "patients")), by ? by : "",
+                          time, words ? words : "");
+}
+
 static void add_identity(struct paper *paper)
 {
     cJSON *identity = cJSON_AddObjectToObject(paper->json, "identity"),
@@ -63,7 +81,7 @@ static void add_identity(struct paper *paper)
                *who = masked && masked[0] ? masked
                       : is_phantom        ? "PHANTOM"
                                           : "identity unknown";
-    add_field(fields, "Patient", written(who), written(""));
+    add_field(fields, "Patient", written(who), stated_of(paper));
     add_field(fields, "Id, issuer", written(masked && masked[0] ? "masked" : "\xe2\x80\x93"), written(""));
     add_field(fields, "Born", written(masked && masked[0] ? "masked" : "\xe2\x80\x93"), written(""));
     add_field(fields, "Plan, approval", written(label), approval_of(treatment));

@@ -142,6 +142,43 @@ test('who the patient is that the files do not name is stated, told in full by /
   assert.ok(named.report.lines.some(({ severity, code }) => severity === 'error' && code === 'patient.stated-differs'));
 });
 
+test('a decision keeps who stated whom the plan is of, its paper says so, and erasing the plan takes the statement, not the record', async () => {
+  putWhole(join(plans, 'stated'), nobody);
+  await openPlan(daemon.url, 'stated');
+  const room = (await call(`${api}/rooms`, 'POST', { plan: 'stated' })).json.id;
+  const ann = await Client.enter(daemon.url, room, { name: 'Ann' });
+  clients.push(ann);
+  assert.equal((await state('stated', { kind: 'identity', ...ottilie }, `?room=${room}`, ann.headers)).status, 204);
+  await loaded('stated', ({ statement }) => statement?.state === 'used');
+  await until(
+    () => call(`${api}/rooms/${room}/record`),
+    ({ status }) => status === 200,
+  );
+  ann.send({ type: 'item.put', kind: 'decision', body: { decision: 'accept', text: '' }, input: 1 });
+  const { item } = await ann.message('item', (m) => m.input === 1, 0, 60000);
+  const at = `${api}/records/${item.id}`;
+  const kept = (
+    await until(
+      () => call(at),
+      ({ status, json }) => status === 200 && json.body?.kept,
+    )
+  ).json.body.kept;
+  assert.deepEqual([kept.plan.statement.kind, kept.plan.statement.by], ['identity', 'Ann']);
+  const says = /^stated by Ann, \d+ \w+ 20\d\d, \d\d:\d\d$/;
+  const [masked] = (await call(`${at}/paper`)).json.identity.fields;
+  assert.equal(masked.text, 'O. M. …327');
+  assert.match(masked.more, says);
+  const named = await call(`${at}/paper?identity=true`);
+  assert.equal(named.json.identity.fields[0].text, ottilie.name, named.text);
+  assert.match(named.json.identity.fields[0].more, says);
+  const gone = await call(`${api}/plans/stated/erase`, 'POST', { reason: 'asked for by the patient' });
+  assert.ok([200, 202, 204].includes(gone.status), gone.text);
+  assert.equal((await call(`${api}/plans/stated/statement`, 'DELETE')).status, 404);
+  const left = await call(at);
+  assert.equal(left.json.body.erased, true, left.text);
+  for (const secret of [...secrets, 'O. M.']) assert.ok(!left.text.includes(secret), secret);
+});
+
 test('what cannot be stated says why, and changes nothing', async () => {
   for (const [plan, body, status, pointer, code] of [
     ['case-1', { kind: 'sure' }, 422, '/kind', 'enum'],
