@@ -216,6 +216,7 @@ $(eval $(call c_programs,fuzz,fuzz,-fsanitize=fuzzer))
 $(B)/fuzz/fuzz_plan_parts: $(call obj,$(addprefix tests/unit/,data_folder.c made_chd.c made_dicom.c made_dose.c))
 $(B)/fuzz/fuzz_plan_parts: private CORE_LIBS += -lcmocka
 $(B)/unit/test_unpack: | $(B)/beamroom-render
+$(B)/unit/test_digest: $(call obj,server/renderer/digest.c)
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: $(call obj,$(UNPACK_SRC))
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: private CORE_LIBS += $(UNPACK_LIBS)
 

@@ -14,7 +14,10 @@ const char *statement_kind_word(enum statement_kind kind)
 
 const char *statement_state_word(enum statement_state state)
 {
-    return state == STATEMENT_USED ? "used" : state == STATEMENT_OUTDATED ? "outdated" : "contradicted";
+    return state == STATEMENT_USED       ? "used"
+           : state == STATEMENT_OUTDATED ? "outdated"
+           : state == STATEMENT_UNREAD   ? "unread"
+                                         : "contradicted";
 }
 
 static void set_patient(int *patient, int shown)
@@ -76,20 +79,28 @@ static bool agrees(const struct plan *plan, const struct plan_patient *stated)
     return plan->n_patients == 0;
 }
 
-void plan_state(struct plan *plan, const struct plan_statement *statement, bool is_current)
+void plan_state(struct plan *plan, const struct plan_statement *statement, enum statement_files files)
 {
-    const bool is_identity = statement->kind == STATEMENT_IDENTITY;
+    const bool is_identity = statement->kind == STATEMENT_IDENTITY, is_current = files == STATEMENT_SAME_FILES;
     plan->statement = *statement;
     plan->statement.state = STATEMENT_OUTDATED;
     if (is_identity && !agrees(plan, &statement->patient)) {
         plan->statement.state = STATEMENT_CONTRADICTED;
         report_add(&plan->report, REPORT_ERROR, "patient.stated-differs", "",
                    "The files name another patient than %s has stated. The files count.", statement->by);
+    } else if (files == STATEMENT_FILES_UNREAD) {
+        plan->statement.state = STATEMENT_UNREAD;
+        report_add(&plan->report, REPORT_WARNING, "patient.statement-unread", "",
+                   "Whether these are the files of which %s has stated whose they are could not be found out, as they "
+                   "could not be read a second time. The statement does not count until they are.",
+                   statement->by);
     } else if (is_current && !is_identity && plan->n_patients > 1) {
         plan->statement.state = STATEMENT_USED;
         make_one_person(plan, statement);
     } else if (is_current && is_identity && plan->n_patients == 0 && !plan->is_phantom) {
         plan->statement.state = STATEMENT_USED;
         plan->patients[plan->n_patients++] = statement->patient;
+        report_add(&plan->report, REPORT_NOTE, "patient.stated", "",
+                   "The files name no patient. %s has stated whose they are.", statement->by);
     }
 }

@@ -14,6 +14,7 @@ enum statement_kind {
 enum statement_state {
     STATEMENT_USED,
     STATEMENT_OUTDATED,    /* it was made of other files: it does not count */
+    STATEMENT_UNREAD,      /* whether it was made of these files could not be found out: it does not count now */
     STATEMENT_CONTRADICTED /* the files name a patient, and another than was stated: the files count */
 };
 struct plan_statement {
@@ -25,12 +26,14 @@ struct plan_statement {
 };
 
 const char *statement_kind_word(enum statement_kind kind);    /* "", "one-person", "identity" */
-const char *statement_state_word(enum statement_state state); /* "used", "outdated", "contradicted" */
+const char *statement_state_word(enum statement_state state); /* "used", "outdated", "unread", "contradicted" */
+/* The files that were read, beside those of the statement; other ones also where it was withdrawn. */
+enum statement_files { STATEMENT_OTHER_FILES, STATEMENT_SAME_FILES, STATEMENT_FILES_UNREAD };
 
 struct plan;
 /* Makes the statement the plan's, whose state it sets, and reports it. Only while the plan is not yet frozen, after it
  * was loaded and kept in the cache.
  *
  *   statement   kind not STATEMENT_NONE
- *   is_current  it was made of the very files that were read, and nobody has withdrawn it; else it changes nothing */
-void plan_state(struct plan *plan, const struct plan_statement *statement, bool is_current);
+ *   files       unless STATEMENT_SAME_FILES it changes nothing */
+void plan_state(struct plan *plan, const struct plan_statement *statement, enum statement_files files);

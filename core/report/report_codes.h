@@ -44,6 +44,10 @@
       "Check by other means that the parts are of one person.") \
     X("patient.stated-differs", "The files name another patient than a person has stated.", \
       "Find out whose plan it is, and withdraw the statement.") \
+    X("patient.statement-unread", "The files could not be compared with those that a person's statement was made of.", \
+      "Have the plan read anew once its files can be read.") \
+    X("patient.stated", "The files name no patient; a person has stated whose they are.", \
+      "Nothing, if that is right; else withdraw the statement.") \
     X("plan.structs-absent", "A treatment plan was made for a structure set that is not in the folder.", \
       "Add the structure set.") \
     X("dose.plan-absent", "A dose refers to a treatment plan that is not in the folder.", \

@@ -222,6 +222,7 @@ static void describe(const struct fleet *fleet, const struct plan_entry *plan, s
         .files_changed_ms = plan->revision.loaded_generation == plan->generation ? plan->revision.changed_ms : 0,
         .files_are_looked_at = plan->revision.program || plan->revision.is_wanted,
         .confined = plan->confined,
+        .patients_seen = plan->seen,
     };
 }
 

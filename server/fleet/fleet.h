@@ -71,7 +71,7 @@ struct fleet_options {
     /* A plan's state or progress changed, or the list (plan_id NULL). On the net thread, from fleet_handle_events or
      * fleet_tick; for a new process, before waiting requests are sent to it. */
     void (*changed)(void *context, const char *plan_id);
-    /* A person's statement of whom the plan is of: {kind, revision, by, time_ms, words, name, id,
+    /* A person's statement of whom the plan is of: {kind, revision, key, patients, by, time_ms, words, name, id,
      * birth_date, withdrawn_ms}, borrowed for the call; NULL, also for the function: nothing. On the net thread, when a
      * renderer is started. */
     const cJSON *(*statement)(void *context, const char *plan_id);
@@ -116,10 +116,12 @@ struct fleet_plan {
     int64_t files_read_ms, files_changed_ms; /* since 1970: when the files were as the open plan was read; when they
                                                 were found to have changed since; 0: they have not */
     bool files_are_looked_at;                /* a look is due or running */
-    const char *confined; /* of its process: "landlock 3, seccomp, no-new-privs, no capabilities"; "": unknown */
+    const char *confined;      /* of its process: "landlock 3, seccomp, no-new-privs, no capabilities"; "": unknown */
+    const char *patients_seen; /* a digest over whom the files of the document name; "": not known; told to nobody */
 };
 struct fleet_revision {
     char digest[65]; /* of the plan's files, as server/renderer/digest.h says; "": not known */
+    char key[65];    /* likewise, of digest */
     uint64_t n_files;
     bool is_current;    /* no look at the files is due or running */
     const char *reason; /* why it cannot be known; "": it can; borrowed until the next call into the fleet */

@@ -69,6 +69,7 @@ struct plan_entry {
     bool is_awaited; /* as last told to the watch */
     bool is_killed;  /* killed by us and not yet ended: its packets are ignored */
     char confined[96];
+    char seen[65]; /* of the document: whom its files name (server/renderer/digest.h: patients_seen) */
     cJSON *document, *default_scene;
     struct room_update *room_updates; /* not yet sent to the renderer */
     int64_t load_ms;

@@ -23,6 +23,7 @@ bool fleet_revision(struct fleet *fleet, const char *plan_id, struct fleet_revis
         plan->revision.is_wanted = true;
     plan_revisions_start(fleet);
     memcpy(revision->digest, plan->revision.digest, sizeof revision->digest);
+    memcpy(revision->key, plan->revision.key, sizeof revision->key);
     revision->n_files = plan->revision.n_files;
     revision->reason = plan->revision.reason;
     revision->is_current = !is_old && !plan->revision.program && !plan->revision.is_wanted;

@@ -93,6 +93,7 @@ static bool ready_packet(struct fleet *fleet, struct plan_entry *plan, struct pa
     plan->document = packet_take_document(packet, ready->plan);
     plan->default_scene = packet_take_document(packet, ready->scene);
     mem_put_text(plan->confined, sizeof plan->confined, ready->confined);
+    mem_put_text(plan->seen, sizeof plan->seen, ready->patients);
     plan->load_ms = ready->load_ms;
     plan->was_ready = true;
     plan->percent = 100;

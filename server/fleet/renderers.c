@@ -13,15 +13,9 @@
 #include "server/fleet/requests.h"
 #include "server/fleet/watch.h"
 
-/* The statement that is kept under either id of the plan. */
 static const cJSON *statement_on(const struct fleet *fleet, const struct plan_entry *plan)
 {
-    const cJSON *found = NULL;
-    if (fleet->options.statement)
-        found = fleet->options.statement(fleet->options.context, plan->id);
-    if (!found && fleet->options.statement && plan_entry_find(fleet, plan->other_id) == plan)
-        found = fleet->options.statement(fleet->options.context, plan->other_id);
-    return found;
+    return fleet->options.statement ? fleet->options.statement(fleet->options.context, plan->id) : NULL;
 }
 
 static void put(char *out, size_t size, const cJSON *json, const char *name)
@@ -31,7 +25,7 @@ static void put(char *out, size_t size, const cJSON *json, const char *name)
 }
 
 /* Encoded before the process is started: it waits for it. NULL: no memory. */
-static uint8_t *statement_packet(const cJSON *said, size_t *n_bytes)
+static uint8_t *statement_packet(const struct plan_entry *plan, const cJSON *said, size_t *n_bytes)
 {
     struct packet packet;
     struct problem problem;
@@ -42,6 +36,10 @@ static uint8_t *statement_packet(const cJSON *said, size_t *n_bytes)
     statement->withdrawn = json_number(said, "withdrawn_ms", 0) > 0;
     statement->time_ms = (int64_t)json_number(said, "time_ms", 0);
     put(statement->revision, sizeof statement->revision, said, "revision");
+    put(statement->key, sizeof statement->key, said, "key");
+    put(statement->patients, sizeof statement->patients, said, "patients");
+    if (plan->revision.digest[0] && strcmp(plan->revision.digest, statement->revision) == 0)
+        packet_put_text(statement->key, sizeof statement->key, plan->revision.key);
     put(statement->by, sizeof statement->by, said, "by");
     put(statement->words, sizeof statement->words, said, "words");
     put(statement->name, sizeof statement->name, said, "name");
@@ -71,7 +69,7 @@ bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
         words[n++] = "--stub";
     const cJSON *said = statement_on(fleet, plan);
     size_t n_statement = 0;
-    uint8_t *statement = said ? statement_packet(said, &n_statement) : NULL;
+    uint8_t *statement = said ? statement_packet(plan, said, &n_statement) : NULL;
     if (said && !statement)
         return false; /* tried again: without it the plan would be another's */
     if (statement)

@@ -109,29 +109,48 @@ static bool suits_plan(const struct fleet_plan *plan, bool is_one, struct proble
 /* The name of the caller: that of the sign-in, else that of the member. */
 static const char *name_of(const struct api *api, const struct call *call)
 {
-    const char *room_id = call_query(call, "room"), *by = call->identity.name;
+    const char *room_id = call_query(call, "room");
+    const char *by = call->identity.name[0] ? call->identity.name : call->identity.user;
     const struct room *room =
         room_id && api_access_sees_room(api, call, room_id) ? net_room_find(api->net, room_id) : NULL;
+    struct fleet_plan of_room, of_call;
+    const struct fleet *fleet = net_fleet(api->net);
+    if (room && (!fleet_plan_find(fleet, room_plan_id(room), &of_room) ||
+                 !fleet_plan_find(fleet, call->ids[0], &of_call) || strcmp(of_room.id, of_call.id) != 0))
+        room = NULL; /* a name in a room of another plan says nothing here */
     if (!by[0] && room)
         by = room_caller_name(room, call->member);
     return by && by[0] ? by : "the person at the server";
 }
 
-/* Adds who says it, when, of which files. */
-static bool sign(struct api *api, const struct call *call, const char *plan_id, cJSON *statement,
+/* Adds who says it, when, of which files and of whom they were when they were read: what its author had seen. */
+static bool sign(struct api *api, const struct call *call, const struct fleet_plan *plan, cJSON *statement,
                  struct problem *problem)
 {
     struct fleet_revision revision;
-    if (!fleet_revision(net_fleet(api->net), plan_id, &revision) || !revision.is_current) {
+    if (!api_plan_revision_known(api, call->ids[0], &revision, problem))
+        return false;
+    if (!revision.is_current) {
         problem_set(problem, PROBLEM_BUSY, "", "", "the revision of the plan's files is being found out");
         problem->retry_after_ms = 300;
         return false;
     }
     cJSON_AddStringToObject(statement, "revision", revision.digest);
+    cJSON_AddStringToObject(statement, "key", revision.key);
+    cJSON_AddStringToObject(statement, "patients", plan->patients_seen);
     cJSON_AddStringToObject(statement, "by", name_of(api, call));
     cJSON_AddStringToObject(statement, "user", call->identity.user);
     cJSON_AddNumberToObject(statement, "time_ms", (double)clock_wall_ms());
     return true;
+}
+
+static bool is_left(const struct api *api, const struct call *call, struct problem *problem)
+{
+    if (!net_is_erasing(api->net, call->ids[0]))
+        return true;
+    problem_set(problem, PROBLEM_BUSY, "", "", "the plan is being erased");
+    problem->retry_after_ms = 2000;
+    return false;
 }
 
 /* It is a planner's to state, who may read whom a plan is of. */
@@ -159,7 +178,7 @@ void api_plan_statement(struct api *api, struct call *call)
     cJSON *body, *statement = NULL;
     if (!api_find_plan(api, call, &plan))
         return;
-    if (!may_state(api, call, &problem)) {
+    if (!may_state(api, call, &problem) || !is_left(api, call, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
@@ -168,7 +187,7 @@ void api_plan_statement(struct api *api, struct call *call)
     const char *kind = json_text(body, "kind");
     const bool is_one = kind && strcmp(kind, "one-person") == 0;
     if ((statement = read_statement(body, &problem)) &&
-        (!suits_plan(&plan, is_one, &problem) || !sign(api, call, call->ids[0], statement, &problem))) {
+        (!suits_plan(&plan, is_one, &problem) || !sign(api, call, &plan, statement, &problem))) {
         cJSON_Delete(statement);
         statement = NULL;
     }

@@ -66,11 +66,13 @@ void api_plan_delete(struct api *api, struct call *call)
         net_audit_by(api->net, &call->identity, call->client, "", call->ids[0], "deleted", detail);
         net_rooms_delete_of_plan(api->net, call->ids[0], call->client, reason);
     }
+    struct fleet_erase of;
+    fleet_erase_of(fleet, call->ids[0], &of); /* its ids, before it is gone */
     if (!fleet_remove_plan(fleet, call->ids[0], &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
-    net_statement_forget(api->net, call->ids[0], "");
+    net_statement_forget(api->net, of.id, of.other_id);
     if (api->auth)
         auth_set_owner(api->auth, call->ids[0], "");
     call_answer_nothing(call, 204);

@@ -141,6 +141,12 @@ void erase_answered(struct net *net, const struct store_answer *answer)
     }
 }
 
+bool net_is_erasing(const struct net *net, const char *plan_id)
+{
+    const struct store_erase *what = net->erasing ? &net->erasing->what : NULL;
+    return what && (strcmp(what->plan, plan_id) == 0 || strcmp(what->other, plan_id) == 0);
+}
+
 void erase_end(struct net *net)
 {
     struct problem problem;

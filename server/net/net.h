@@ -156,6 +156,7 @@ void net_audit_refused(struct net *net, const struct identity *who, const char *
 typedef void net_erased(void *context, int64_t n_rooms, int64_t n_records, const struct problem *problem);
 NODISCARD bool net_erase_plan(struct net *net, const char *plan_id, const struct identity *who, const char *address,
                               const char *reason, net_erased *done, void *context, struct problem *problem);
+bool net_is_erasing(const struct net *net, const char *plan_id); /* this plan, by either id */
 /* looked is called whenever sign-ins may have ended or rights gone, and every 20 s where people sign in: whoever serves
  * somebody for long asks then whether it still may. It is called from nowhere but the loop or a call. */
 void net_on_identities(struct net *net, void (*looked)(void *context), void *context);

@@ -20,7 +20,8 @@ struct kept_statement {
     uint64_t ticket; /* of that write; 0: none */
     net_statement_done *done;
     void *context;
-    bool is_changed; /* now is not on disk */
+    bool is_changed;   /* now is not on disk */
+    bool is_forgotten; /* its plan has gone while the write was under way: pending never counts */
 };
 
 struct statements {
@@ -63,9 +64,37 @@ static void drop_if_empty(struct net *net, struct kept_statement *kept)
     memmove(kept, kept + 1, (all->n - i) * sizeof *kept);
 }
 
+static bool is_full(const struct net *net)
+{
+    return net->statements && net->statements->n >= NET_MAX_STATEMENTS;
+}
+
+/* The other id of the plan, with or without sign-in; "": it has none. */
+static void other_id_of(const struct net *net, const char *plan_id, char out[64])
+{
+    struct fleet_erase of;
+    out[0] = 0;
+    if (!net->fleet || !net->statements || net->statements->n == 0)
+        return;
+    fleet_erase_of(net->fleet, plan_id, &of);
+    mem_put_text(out, 64, strcmp(of.id, plan_id) == 0 ? of.other_id : of.id);
+}
+
+/* The statement of the plan, by whichever of its ids it is kept. */
+static struct kept_statement *find_of_plan(const struct net *net, const char *plan_id)
+{
+    char other[64];
+    struct kept_statement *kept = find(net, plan_id);
+    if (kept && (kept->now || kept->ticket))
+        return kept;
+    other_id_of(net, plan_id, other);
+    struct kept_statement *by_other = other[0] ? find(net, other) : NULL;
+    return by_other ? by_other : kept;
+}
+
 const cJSON *net_statement_on(const struct net *net, const char *plan_id)
 {
-    const struct kept_statement *kept = find(net, plan_id);
+    const struct kept_statement *kept = find_of_plan(net, plan_id);
     return kept ? kept->now : NULL;
 }
 
@@ -132,10 +161,54 @@ static struct store_room *make_write(const char *plan_id, const cJSON *statement
     return NULL;
 }
 
+static void forget(struct net *net, const char *plan_id)
+{
+    struct kept_statement *kept = find(net, plan_id);
+    if (!kept)
+        return;
+    cJSON_Delete(kept->now);
+    kept->now = NULL;
+    kept->is_changed = net->store != NULL;
+    kept->is_forgotten = kept->ticket != 0;
+    drop_if_empty(net, kept);
+    schedule_at(net, 0);
+}
+
+/* Takes away what was withdrawn first because its plan's files had changed. False: there is none. */
+static bool forget_oldest_withdrawn(struct net *net)
+{
+    const struct kept_statement *oldest = NULL;
+    for (size_t i = 0; i < net->statements->n; i++) {
+        const struct kept_statement *kept = &net->statements->list[i];
+        const double ms = kept->ticket ? 0 : json_number(kept->now, "withdrawn_ms", 0);
+        if (ms > 0 && (!oldest || ms < json_number(oldest->now, "withdrawn_ms", 0)))
+            oldest = kept;
+    }
+    if (oldest)
+        forget(net, oldest->plan);
+    return oldest != NULL;
+}
+
+/* A place for the first statement on the plan; NULL with problem. */
+static struct kept_statement *make_place(struct net *net, const char *plan_id, struct problem *problem)
+{
+    const bool is_made = is_full(net) && forget_oldest_withdrawn(net);
+    struct kept_statement *kept = append(net, plan_id);
+    if (!kept && is_made) { /* once it is gone from the disk */
+        problem_set(problem, PROBLEM_BUSY, "", "",
+                    "a statement that does not count any more is taken away for this one");
+        problem->retry_after_ms = 300;
+    } else if (!kept) {
+        problem_set(problem, PROBLEM_LIMIT, "", "",
+                    "statements on %d plans are kept, more are not allowed: withdraw some", NET_MAX_STATEMENTS);
+    }
+    return kept;
+}
+
 /* The change counts: the plan is read with it. */
 static void take_over(struct net *net, struct kept_statement *kept)
 {
-    char plan[sizeof kept->plan];
+    char plan[sizeof kept->plan], other[64];
     net_statement_done *done = kept->done;
     void *context = kept->context;
     mem_put_text(plan, sizeof plan, kept->plan);
@@ -145,16 +218,36 @@ static void take_over(struct net *net, struct kept_statement *kept)
     kept->now = kept->pending;
     kept->pending = NULL;
     drop_if_empty(net, kept);
+    other_id_of(net, plan, other);
+    if (other[0]) /* an earlier one does not come back when this is withdrawn */
+        forget(net, other);
     fleet_read_anew(net->fleet, plan);
     if (done)
         done(context, NULL);
+}
+
+/* The plan has gone while its statement was written: that is taken from the disk again. */
+static void give_up(struct net *net, struct kept_statement *kept)
+{
+    struct problem problem;
+    net_statement_done *done = kept->done;
+    void *context = kept->context;
+    cJSON_Delete(kept->pending);
+    kept->pending = NULL;
+    kept->ticket = 0;
+    kept->is_forgotten = false;
+    kept->is_changed = net->store != NULL;
+    schedule_at(net, 0);
+    (void)problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the plan is gone");
+    if (done)
+        done(context, &problem);
 }
 
 bool net_statement_put(struct net *net, const char *plan_id, cJSON *statement, const struct identity *who,
                        const char *by, const char *address, net_statement_done *done, void *context,
                        struct problem *problem)
 {
-    struct kept_statement *kept = find(net, plan_id);
+    struct kept_statement *kept = find_of_plan(net, plan_id);
     if (kept && kept->ticket) {
         problem_set(problem, PROBLEM_BUSY, "", "", "another statement on this plan is being written");
         problem->retry_after_ms = 300;
@@ -165,14 +258,13 @@ bool net_statement_put(struct net *net, const char *plan_id, cJSON *statement, c
         cJSON_Delete(statement);
         return false;
     }
-    if (!kept && !(kept = append(net, plan_id))) {
+    if (!kept && !(kept = make_place(net, plan_id, problem))) {
         cJSON_Delete(statement);
-        return problem_set(problem, PROBLEM_LIMIT, "", "",
-                           "statements on %d plans are kept, more are not allowed: withdraw some", NET_MAX_STATEMENTS);
+        return false;
     }
     cJSON *detail = audit_detail(statement ? statement : kept->now, statement ? "made" : "withdrawn");
     char *audit = audit_text(plan_id, detail, who, by, address);
-    struct store_room *write = audit && net->store ? make_write(plan_id, statement, audit) : NULL;
+    struct store_room *write = audit && net->store ? make_write(kept->plan, statement, audit) : NULL;
     const uint64_t ticket = net->n_tickets + 1;
     if (net->store && (!write || !store_write(net->store, write, ticket))) {
         store_room_free(write);
@@ -200,6 +292,10 @@ bool statements_written(struct net *net, const struct store_answer *answer)
         struct kept_statement *kept = &net->statements->list[i];
         if (!kept->ticket || kept->ticket != answer->ticket)
             continue;
+        if (kept->is_forgotten) {
+            give_up(net, kept);
+            return true;
+        }
         if (answer->error.code == ERROR_NONE) {
             take_over(net, kept);
             return true;
@@ -239,14 +335,14 @@ void statements_write_due(struct net *net)
 void statements_plan_changed(struct net *net, const char *plan_id)
 {
     struct fleet_plan plan;
-    struct kept_statement *kept = find(net, plan_id);
+    struct kept_statement *kept = find_of_plan(net, plan_id);
     if (!kept || !kept->now || json_number(kept->now, "withdrawn_ms", 0) > 0 ||
         !fleet_plan_find(net->fleet, plan_id, &plan) || plan.state != FLEET_READY)
         return;
     const cJSON *read = cJSON_GetObjectItemCaseSensitive(plan.document, "statement");
     const char *state = json_text(read, "state");
     /* that of another statement is of the renderer that is being replaced */
-    if (!state || strcmp(state, "used") == 0 ||
+    if (!state || (strcmp(state, "outdated") != 0 && strcmp(state, "contradicted") != 0) ||
         json_number(read, "time_ms", 0) != json_number(kept->now, "time_ms", -1))
         return;
     cJSON_DeleteItemFromObjectCaseSensitive(kept->now, "withdrawn_ms");
@@ -262,30 +358,21 @@ void statements_add_all(struct net *net, const struct store_answer *opened)
 {
     for (size_t i = 0; i < opened->n_statements; i++) {
         const struct store_statement *row = &opened->statements[i];
-        cJSON *body = find(net, row->plan) ? NULL : json_read(row->body, strlen(row->body), NULL);
+        if (find(net, row->plan)) /* what was said since the start replaces it */
+            continue;
+        cJSON *body = json_read(row->body, strlen(row->body), NULL);
         struct kept_statement *kept = body ? append(net, row->plan) : NULL;
         if (kept) {
             kept->now = body;
             fleet_read_anew(net->fleet, row->plan); /* one that was opened while the disk could not be read */
         } else {
+            log_error(body ? "there is no place for a statement on a plan of the database"
+                           : "a statement on a plan is not readable in the database");
             cJSON_Delete(body);
-            log_error("a statement on a plan is not readable in the database");
         }
     }
     for (size_t i = 0; opened->is_new && net->statements && i < net->statements->n; i++)
         net->statements->list[i].is_changed = true; /* what was on disk was lost */
-}
-
-static void forget(struct net *net, const char *plan_id)
-{
-    struct kept_statement *kept = find(net, plan_id);
-    if (!kept)
-        return;
-    cJSON_Delete(kept->now);
-    kept->now = NULL;
-    kept->is_changed = net->store != NULL;
-    drop_if_empty(net, kept);
-    schedule_at(net, 0);
 }
 
 void net_statement_forget(struct net *net, const char *plan_id, const char *other)

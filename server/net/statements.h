@@ -9,9 +9,9 @@ enum { NET_MAX_STATEMENTS = STORE_MAX_STATEMENTS };
 /* Called once: when the change is on disk, and the plan is being read anew. problem: nothing has changed. */
 typedef void net_statement_done(void *context, const struct problem *problem);
 
-/* {kind: "one-person" | "identity", revision, by, time_ms, words, name, id, birth_date, withdrawn_ms}: name to
- * birth_date of "identity" alone; withdrawn_ms: since then it does not count, as the files have changed. NULL: there is
- * none. */
+/* {kind: "one-person" | "identity", revision, key, patients, by, time_ms, words, name, id, birth_date, withdrawn_ms}:
+ * name to birth_date of "identity" alone; withdrawn_ms: since then it does not count, as the files have changed. NULL:
+ * there is none. Of the plan, by either of its ids. */
 const cJSON *net_statement_on(const struct net *net, const char *plan_id);
 /* Writes the plan's statement (taken; NULL: withdraws it), which counts when it is on disk. by: who says it, as people
  * read it. False with problem: storage; busy, while another one is being written; limit. */

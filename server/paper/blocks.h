@@ -61,4 +61,6 @@ void parts_add(struct paper *paper);
 const cJSON *paper_part_of(const struct paper *paper, const char *list, const char *id);
 const cJSON *paper_shown_dose(const struct paper *paper); /* NULL: there is none */
 const cJSON *paper_treatment(const struct paper *paper);  /* the shown treatment plan; NULL: there is none */
+/* Whether an item of the record was written of the files and the patient that the printed item was. */
+bool paper_is_of_same(const struct paper *paper, const cJSON *item);
 const char *region_name(const struct paper *paper, const char *id);

@@ -510,12 +510,11 @@ static void add_signatures(struct paper *paper)
         { "Person", 32, 'l' }, { "Meaning", 14, 'l' }, { "At", 26, 'l' }, { "Confirmed", 28, 'l' }
     };
     const cJSON *item;
-    const char *revision = text_of(get(paper->source->item, "body"), "plan_revision");
     block_heading(paper, "Signatures", "");
     cJSON *table = block_table(paper, columns, 4);
     cJSON_ArrayForEach(item, get(paper->record, "signatures"))
     {
-        if (strcmp(text_of(item, "plan_revision"), revision) == 0)
+        if (paper_is_of_same(paper, item))
             add_signature(paper, table, item, item, true);
     }
     cJSON_ArrayForEach(item, paper->source->signatures)

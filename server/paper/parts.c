@@ -209,14 +209,14 @@ static void add_mark(const struct paper *paper, cJSON *table, const cJSON *item)
             "");
 }
 
-/* Adds the marks of an entry under a revision. False: it has none. */
-static bool add_marks(const struct paper *paper, cJSON *table, int entry, const char *revision)
+/* Adds the marks of an entry that were made of the files and the patient of the decision. False: it has none. */
+static bool add_marks(const struct paper *paper, cJSON *table, int entry)
 {
     const cJSON *item;
     bool has_mark = false;
     cJSON_ArrayForEach(item, get(paper->record, "checklist"))
     {
-        if (entry_of(item) == entry && strcmp(text_of(item, "plan_revision"), revision) == 0) {
+        if (entry_of(item) == entry && paper_is_of_same(paper, item)) {
             add_mark(paper, table, item);
             has_mark = true;
         }
@@ -238,13 +238,12 @@ static void add_checklist(struct paper *paper)
     static const struct paper_column columns[] = {
         { "Entry", 40, 'l' }, { "State", 12, 'l' }, { "What is wrong", 25, 'l' }, { "By", 23, 'l' }
     };
-    const char *revision = text_of(get(paper->source->item, "body"), "plan_revision");
     block_heading(paper, "Checklist", "");
     cJSON *table = block_table(paper, columns, 4);
     for (int entry = 0; cJSON_IsArray(get(paper->record, "checklist")) && entry < N_ENTRIES; entry++)
-        if (!add_marks(paper, table, entry, revision))
+        if (!add_marks(paper, table, entry))
             add_unmarked(table, entries[entry][1]);
-    (void)add_marks(paper, table, -1, revision);
+    (void)add_marks(paper, table, -1);
     table_end(paper, table, "It was not kept with this decision.");
 }
 

@@ -34,6 +34,19 @@ const char *region_name(const struct paper *paper, const char *id)
     return id;
 }
 
+static bool is_number(const cJSON *item, double number)
+{
+    const double own = json_number(item, "statement_ms", 0);
+    return !(own < number) && !(own > number);
+}
+
+bool paper_is_of_same(const struct paper *paper, const cJSON *item)
+{
+    const cJSON *body = cJSON_GetObjectItemCaseSensitive(paper->source->item, "body");
+    const char *own = json_text(item, "plan_revision"), *printed = json_text(body, "plan_revision");
+    return strcmp(own ? own : "", printed ? printed : "") == 0 && is_number(item, json_number(body, "statement_ms", 0));
+}
+
 /* Chosen as the page does (web/js/room/identity.js): by the shown dose, else as the plan's document says. */
 const cJSON *paper_treatment(const struct paper *paper)
 {

@@ -6,6 +6,7 @@
 #include <fts.h>
 #include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@
 #include <unistd.h>
 
 #include "core/base/mem.h"
+#include "core/plan/origin.h"
 
 enum { READ_BYTES = 1 << 20 };
 
@@ -26,6 +28,8 @@ struct file {
 struct files {
     struct file *list;
     size_t n;
+    const struct digest_watch *watch;
+    double n_all, n_read; /* bytes */
 };
 
 static int compare(const void *a, const void *b)
@@ -130,28 +134,37 @@ static void make_key(const struct files *files, char key[65])
     write_hex(&state, key);
 }
 
-static bool digest_file(int folder, const char *path, unsigned char *buffer, char hex[65], uint64_t *n_bytes,
-                        struct error *err)
+static bool goes_on(struct files *files, double n_more, struct error *err)
+{
+    files->n_read += n_more;
+    return !files->watch ||
+           files->watch->goes_on(files->watch->context, 100 * files->n_read / fmax(files->n_all, files->n_read)) ||
+           error_set(err, ERROR_CANCELLED, "reading the files was stopped");
+}
+
+static bool digest_file(struct files *files, int folder, const char *path, unsigned char *buffer, char hex[65],
+                        uint64_t *n_bytes, struct error *err)
 {
     crypto_hash_sha256_state state;
     ssize_t n = -1;
+    bool ok = true;
     int fd = openat(folder, path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
     (void)crypto_hash_sha256_init(&state);
-    while (fd >= 0 && ((n = read(fd, buffer, READ_BYTES)) > 0 || (n < 0 && errno == EINTR)))
+    while (ok && fd >= 0 && ((n = read(fd, buffer, READ_BYTES)) > 0 || (n < 0 && errno == EINTR)))
         if (n > 0) {
             (void)crypto_hash_sha256_update(&state, buffer, (unsigned long long)n);
             *n_bytes += (uint64_t)n;
+            ok = goes_on(files, (double)n, err);
         }
-    if (fd < 0 || n < 0)
+    if (ok && (fd < 0 || n < 0))
         error_set(err, ERROR_IO, "%.100s: %s", path, strerror(errno));
     if (fd >= 0)
         (void)close(fd);
     write_hex(&state, hex);
-    return fd >= 0 && n == 0;
+    return ok && fd >= 0 && n == 0;
 }
 
-static bool digest_files(const char *path, const struct files *files, char hex[65], uint64_t *n_bytes,
-                         struct error *err)
+static bool digest_files(const char *path, struct files *files, char hex[65], uint64_t *n_bytes, struct error *err)
 {
     crypto_hash_sha256_state state;
     unsigned char *buffer = malloc(READ_BYTES);
@@ -160,9 +173,11 @@ static bool digest_files(const char *path, const struct files *files, char hex[6
     if (!ok)
         error_set(err, ERROR_IO, "%s", strerror(errno));
     (void)crypto_hash_sha256_init(&state);
+    for (size_t i = 0; i < files->n; i++)
+        files->n_all += (double)files->list[i].size;
     for (size_t i = 0; ok && i < files->n; i++) {
         char own[65];
-        ok = digest_file(folder, files->list[i].path, buffer, own, n_bytes, err);
+        ok = digest_file(files, folder, files->list[i].path, buffer, own, n_bytes, err);
         add_text(&state, own, 64);
         add_text(&state, "  ", 2);
         add_text(&state, files->list[i].path, strlen(files->list[i].path));
@@ -175,9 +190,9 @@ static bool digest_files(const char *path, const struct files *files, char hex[6
     return ok;
 }
 
-cJSON *digest_folder(const char *folder, const char *known)
+cJSON *digest_folder(const char *folder, const char *known, const struct digest_watch *watch)
 {
-    struct files files = { 0 };
+    struct files files = { .watch = watch };
     struct error err = { 0 };
     char key[65] = "", revision[65] = "";
     uint64_t n_bytes = 0;
@@ -200,4 +215,16 @@ cJSON *digest_folder(const char *folder, const char *known)
     }
     finish(&files);
     return json;
+}
+
+void patients_seen(const struct plan_patient *patients, size_t n, char hex[65])
+{
+    crypto_hash_sha256_state state;
+    (void)crypto_hash_sha256_init(&state);
+    for (size_t i = 0; i < n; i++) {
+        const char *const texts[] = { patients[i].id, patients[i].issuer, patients[i].name, patients[i].birth_date };
+        for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++)
+            add_text(&state, texts[k], strlen(texts[k]) + 1);
+    }
+    write_hex(&state, hex);
 }

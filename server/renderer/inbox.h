@@ -25,6 +25,7 @@ struct inbox_event {
     char phase[200];           /* PROGRESS */
     double percent;            /* PROGRESS */
     struct plan *plan;         /* LOADED: the receiver's to destroy, after derived */
+    char seen[65];             /* LOADED: patients_seen */
     struct derive *derived;    /* LOADED: the plan's store, the receiver's to destroy */
     struct pipeline_frame frame;
     int64_t id;    /* ANSWER: of the question */

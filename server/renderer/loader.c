@@ -137,12 +137,12 @@ static void build_ahead(struct loader *loader)
     free(subjects);
 }
 
-/* Stores a plan that took long to open in the cache, as its files are: not with a person's statement. A failure only
+/* Stores a plan that took long to open in the cache, as its files are: before a person's statement. A failure only
  * means that the next opening reads the folder. */
 static void store_in_cache(const struct loader *loader, const struct plan *plan, const struct plan_sources *sources)
 {
     struct error err = { 0 };
-    if (!loader->cache_folder || loader->statement || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
+    if (!loader->cache_folder || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
         return;
     if (!plan_cache_store(plan, sources, loader->cache_folder, &err))
         log_warn("the opened plan is not kept: %s", err.text);
@@ -157,22 +157,44 @@ static void hide_folder(struct plan *plan, const char *folder, const char *id)
         (void)snprintf(plan->name, sizeof plan->name, "%s", id);
 }
 
-/* Applies the statement, if the files are those that it was made of. They are read for that a second time, after the
- * plan: files that change meanwhile are not those. */
-static void apply_statement(const struct loader *loader, struct plan *plan)
+static bool read_again(void *context, double percent)
+{
+    (void)percent;
+    struct loader *loader = context;
+    report_progress(loader, "reading the files again", 90);
+    return !atomic_load(&loader->cancel);
+}
+
+/* Whether the files are those that the statement was made of. Their times and sizes say that, else they are read a
+ * second time, after the plan: files that change meanwhile are not those. Also the patients are those that its author
+ * had before them: files that had changed by then were not. */
+static enum statement_files compare_files(struct loader *loader, const char *seen)
+{
+    const struct packet_statement *said = loader->statement;
+    if (said->withdrawn || strcmp(said->patients, seen) != 0)
+        return STATEMENT_OTHER_FILES;
+    cJSON *digest =
+        digest_folder(loader->folder, said->key[0] ? said->key : NULL, &(struct digest_watch){ read_again, loader });
+    const char *revision = json_text(digest, "revision"), *key = json_text(digest, "key"),
+               *reason = json_text(digest, "reason");
+    const bool is_same = revision ? strcmp(revision, said->revision) == 0 : key && strcmp(key, said->key) == 0;
+    if (!key)
+        log_warn("the files were not read again for a statement: %s", reason ? reason : "no memory");
+    cJSON_Delete(digest);
+    return !key ? STATEMENT_FILES_UNREAD : is_same ? STATEMENT_SAME_FILES : STATEMENT_OTHER_FILES;
+}
+
+static void apply_statement(struct loader *loader, struct plan *plan, const char *seen)
 {
     const struct packet_statement *said = loader->statement;
     struct plan_statement statement = { .kind = said->one_person ? STATEMENT_ONE_PERSON : STATEMENT_IDENTITY,
                                         .time_ms = said->time_ms };
-    cJSON *digest = said->withdrawn ? NULL : digest_folder(loader->folder, NULL);
-    const char *revision = json_text(digest, "revision");
     mem_put_text(statement.by, sizeof statement.by, said->by);
     mem_put_text(statement.words, sizeof statement.words, said->words);
     mem_put_text(statement.patient.name, sizeof statement.patient.name, said->name);
     mem_put_text(statement.patient.id, sizeof statement.patient.id, said->patient_id);
     mem_put_text(statement.patient.birth_date, sizeof statement.patient.birth_date, said->birth_date);
-    plan_state(plan, &statement, revision && strcmp(revision, said->revision) == 0);
-    cJSON_Delete(digest);
+    plan_state(plan, &statement, compare_files(loader, seen));
 }
 
 static void *load_main(void *argument)
@@ -187,8 +209,12 @@ static void *load_main(void *argument)
     struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &event.error);
     if (plan && loader->hides_folder)
         hide_folder(plan, loader->folder, loader->plan_id);
-    if (plan && loader->statement)
-        apply_statement(loader, plan);
+    if (plan)
+        patients_seen(plan->patients, plan->n_patients, event.seen);
+    if (plan && loader->statement) {
+        store_in_cache(loader, plan, sources);
+        apply_statement(loader, plan, event.seen);
+    }
     loader->plan = event.plan = plan;
     if (plan)
         loader->derived = event.derived = derive_create(plan);
@@ -197,7 +223,8 @@ static void *load_main(void *argument)
     inbox_put(loader->inbox, &event);
     if (plan) {
         build_ahead(loader);
-        store_in_cache(loader, plan, sources);
+        if (!loader->statement)
+            store_in_cache(loader, plan, sources);
     }
     plan_sources_destroy(sources);
     if (!plan)

@@ -271,7 +271,7 @@ int main(int argc, char **argv)
     if (arguments.scan)
         return scan(arguments.scan, session->hides_folder);
     if (arguments.digest)
-        return print_json(digest_folder(arguments.digest, arguments.known));
+        return print_json(digest_folder(arguments.digest, arguments.known, NULL));
     if (arguments.is_probe)
         return probe_gl(session, confined);
     return session_run(session);

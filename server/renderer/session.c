@@ -26,6 +26,7 @@ struct session {
     struct pictures *pictures;
     struct plan *plan;      /* NULL until it is loaded */
     struct derive *derived; /* the plan's store */
+    char seen[65];          /* patients_seen of it */
     bool is_built, has_gl, is_ready;
     int64_t began_us;
     int status; /* exit status; -1: go on */
@@ -66,6 +67,7 @@ static void send_ready_once(struct session *session)
     packet.ready.plan = document;
     packet.ready.scene = scenes_default(session->scenes);
     packet_put_text(packet.ready.confined, sizeof packet.ready.confined, session->options->confined);
+    packet_put_text(packet.ready.patients, sizeof packet.ready.patients, session->seen);
     packet.ready.memory_bytes = resident_bytes();
     packet.ready.load_ms = (clock_now_us() - session->began_us) / 1000;
     link_send(session->link, &packet, NULL, 0);
@@ -208,6 +210,7 @@ static void handle_event(struct session *session, struct inbox_event *event)
     case INBOX_LOADED:
         session->plan = event->plan;
         session->derived = event->derived;
+        mem_put_text(session->seen, sizeof session->seen, event->seen);
         event->plan = NULL;
         event->derived = NULL;
         scenes_set_plan(session->scenes, session->derived);

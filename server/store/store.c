@@ -1,7 +1,7 @@
+#define _GNU_SOURCE
 /* The store's thread: batches, commits, tries again. */
 #include "server/store/store.h"
 
-#include <errno.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -442,12 +442,12 @@ static void *work(void *context)
 {
     struct store *store = context;
     bool ends = false;
+    (void)pthread_setname_np(pthread_self(), "store");
     while (!ends) {
         struct request *request =
             store->n_pending < MAX_PENDING || !store->is_failing ? queue_take(store->queue, wait_ms(store)) : NULL;
         if (!request && store->n_pending >= MAX_PENDING) {
-            struct timespec pause = { .tv_nsec = 50000000 };
-            (void)nanosleep(&pause, NULL);
+            (void)nanosleep(&(struct timespec){ .tv_nsec = 50000000 }, NULL);
         }
         for (; request; request = store->n_pending < MAX_PENDING ? queue_try_take(store->queue) : NULL) {
             if (is_closed(request)) {

@@ -1,11 +1,15 @@
 // A statement of whom a plan is of kept, for every room, over a restart, until it is withdrawn or the files change. Made-up DICOM; nobody's data.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { execFileSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { chmodSync, mkdtempSync, readdirSync, readFileSync, realpathSync, rmSync, writeFileSync } from 'node:fs';
+import { request } from 'node:http';
+import { tmpdir, userInfo } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { call, openPlan, startDaemon, until } from './daemon.mjs';
 import { FullDisk } from './full_disk.mjs';
+import { holdThread, threadNamed } from './hold.mjs';
 import { putDose, putWhole } from './made_dicom.mjs';
 import { Client } from './ws_client.mjs';
 
@@ -179,6 +183,140 @@ test('a decision keeps who stated whom the plan is of, its paper says so, and er
   for (const secret of [...secrets, 'O. M.']) assert.ok(!left.text.includes(secret), secret);
 });
 
+const reopen = async (plan) => {
+  assert.equal((await call(`${api}/plans/${plan}/close`, 'POST', {})).status, 204);
+  assert.equal((await openPlan(daemon.url, plan)).state, 'done', daemon.log());
+};
+
+test('it counts for the patients alone that its author had before them', async () => {
+  putWhole(join(plans, 'swapped'), quirin);
+  putDose(join(plans, 'swapped'), asWritten, { uid: '1.2.89', file: 'other.dcm', plan: '1.2.71' });
+  await openPlan(daemon.url, 'swapped'); // in no room: nobody looks at the files
+  const stranger = { id: ottilie.id, name: ottilie.name, birthDate: '19550723' };
+  putDose(join(plans, 'swapped'), stranger, { uid: '1.2.89', file: 'other.dcm', plan: '1.2.71' });
+  assert.equal((await state('swapped', one)).status, 204);
+  const read = await loaded('swapped', ({ statement }) => statement);
+  assert.deepEqual([read.patients.map(({ masked }) => masked), read.statement.state], [['Q. Z. …419', 'O. M. …327'], 'outdated']);
+  assert.equal((await state('swapped', one)).status, 204); // now that they are seen
+  await loaded('swapped', ({ statement }) => statement.state === 'used');
+});
+
+test('files that cannot be read for a while withdraw nothing', async () => {
+  const noise = join(plans, 'swapped', 'noise.txt');
+  writeFileSync(noise, 'x');
+  chmodSync(noise, 0); // no part of the plan: it opens all the same
+  await reopen('swapped');
+  const unread = await loaded('swapped', ({ statement }) => statement);
+  assert.deepEqual([unread.statement.state, relation(unread)], ['unread', 'patient']);
+  assert.match(JSON.stringify(unread.report), /could not be read a second time/);
+  const refused = await state('swapped', one);
+  assert.deepEqual([refused.status, refused.json.type], [409, '/problems/plan-unreadable'], refused.text);
+  rmSync(noise);
+  await reopen('swapped');
+  assert.equal((await loaded('swapped', ({ statement }) => statement)).statement.state, 'used');
+  assert.ok(!(await audit('made')).some(({ detail }) => detail.what === 'outdated' && detail.plan === 'swapped'));
+});
+
+test('what is written in the record stands under the statement of then', async () => {
+  const room = (await call(`${api}/rooms`, 'POST', { plan: 'swapped' })).json.id;
+  const ann = await Client.enter(daemon.url, room, { name: 'Ann' });
+  clients.push(ann);
+  const record = async () =>
+    (
+      await until(
+        () => call(`${api}/rooms/${room}/record`),
+        ({ status }) => status === 200,
+      )
+    ).json;
+  const first = (await document('swapped')).statement.time_ms;
+  assert.equal((await record()).statement_ms, first);
+  const body = { entry: 'regions', text: 'Regions as drawn', state: 'ok', comment: '' };
+  const mark = () => call(`${api}/rooms/${room}/checks`, 'POST', { body }, ann.headers);
+  const before = await mark();
+  assert.deepEqual([before.status, before.json.body.statement_ms], [201, first], before.text);
+  assert.equal((await mark()).status, 409); // the entry has its check
+  assert.equal((await state('swapped', { ...one, words: 'They are one person after all' })).status, 204);
+  const second = (await loaded('swapped', ({ statement }) => statement.time_ms > first && statement.state === 'used')).statement.time_ms;
+  await ann.message('plan', ({ plan }) => plan.statement?.time_ms === second && plan.statement.state === 'used');
+  const change = (item, version) =>
+    call(`${api}/rooms/${room}/checks/${item.id}`, 'PATCH', { version, body: { ...body, comment: 'twice' } }, ann.headers);
+  const late = await change(before.json, 1);
+  assert.deepEqual([late.status, late.json.code], [403, 'append-only'], late.text);
+  const again = await mark();
+  assert.deepEqual([again.status, again.json.body.statement_ms], [201, second], again.text);
+  assert.equal((await change(again.json, 1)).status, 200);
+  const forged = await call(
+    `${api}/rooms/${room}/checks`,
+    'POST',
+    { body: { ...body, entry: 'dose', text: 'Dose', statement_ms: 5 } },
+    ann.headers,
+  );
+  assert.equal(forged.json.body?.statement_ms ?? 0, forged.status === 201 ? second : 0, forged.text);
+  const decided = await call(`${api}/rooms/${room}/decisions`, 'POST', { body: { decision: 'accept', text: '' } }, ann.headers);
+  assert.deepEqual([decided.status, decided.json.body.statement_ms], [201, second], decided.text);
+  assert.deepEqual(
+    (await record()).checklist.filter(({ entry }) => entry === 'regions').map(({ statement_ms: ms }) => ms),
+    [first, second],
+  ); // prettier-ignore
+  const paper = await until(
+    () => call(`${api}/records/${decided.json.id}/paper`),
+    ({ status, text }) => status === 200 && /"Checklist"/.test(text),
+  );
+  assert.equal(paper.text.match(/twice/g)?.length, 1, paper.text); // that of now
+  const table = JSON.stringify(paper.json).split('"Checklist"')[1];
+  assert.equal(table.match(/Regions as drawn/g)?.length, 1, table); // not that of before
+});
+
+/** Whether a file below the folder has the word. */
+const has = (folder, word) =>
+  readdirSync(folder, { withFileTypes: true }).some((entry) => {
+    const path = join(folder, entry.name);
+    return entry.isDirectory() ? has(path, word) : entry.isFile() && readFileSync(path).includes(word);
+  });
+
+test('a statement that is being written when its plan is deleted does not stay', async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), 'beamroom-statement-deleted-'));
+  const own = await startDaemon({ plans: [join(folder)], data: join(folder, 'data'), args: ['--stub'] });
+  try {
+    putWhole(join(folder, 'packed', 'gone'), nobody);
+    execFileSync('tar', ['-cf', join(folder, 'gone.tar'), '-C', join(folder, 'packed'), 'gone']);
+    const at = `${own.url}/api/v1`;
+    const job = await (
+      await fetch(`${at}/plans?name=gone`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/x-tar' },
+        body: readFileSync(join(folder, 'gone.tar')),
+      })
+    ).json();
+    const { plan } = await until(
+      async () => (await call(`${at}/jobs/${job.id}`)).json,
+      ({ state: now }) => now === 'done' || now === 'failed',
+    );
+    await openPlan(own.url, plan);
+    await until(
+      () => call(`${at}/plans/${plan}/revision`),
+      ({ status }) => status === 200,
+    ); // prettier-ignore
+    const held = await holdThread(await threadNamed(own.child.pid, 'store'));
+    if (!held) return void t.skip('a thread of another program may not be stopped here');
+    const said = call(`${at}/plans/${plan}/statement`, 'POST', { kind: 'identity', ...ottilie });
+    const second = await until(
+      () => call(`${at}/plans/${plan}/statement`, 'POST', { kind: 'identity', ...ottilie }),
+      ({ json }) => /another statement/.test(json?.detail),
+    );
+    assert.equal(second.status, 503); // the first one is under way
+    assert.equal((await call(`${at}/plans/${plan}`, 'DELETE')).status, 204);
+    held.release();
+    const answer = await said;
+    assert.deepEqual([answer.status, answer.json?.type], [404, '/problems/not-found']);
+    await own.stop();
+    assert.ok(!has(join(folder, 'data'), 'Ottilie'), 'the name is on the disk');
+  } finally {
+    await own.stop();
+    rmSync(folder, { recursive: true, force: true });
+  }
+});
+
 test('what cannot be stated says why, and changes nothing', async () => {
   for (const [plan, body, status, pointer, code] of [
     ['case-1', { kind: 'sure' }, 422, '/kind', 'enum'],
@@ -194,6 +332,103 @@ test('what cannot be stated says why, and changes nothing', async () => {
     const { json, ...answer } = await state(plan, body);
     assert.deepEqual([answer.status, json.pointer ?? '', json.code ?? ''], [status, pointer, code], JSON.stringify(body));
   }
+});
+
+/** A call of somebody who has signed in at a proxy. */
+const askAs = (socketPath, user, path, method = 'GET', body) =>
+  new Promise((done, failed) => {
+    const text = body === undefined ? '' : JSON.stringify(body);
+    const headers = {
+      Host: 'beamroom.example',
+      'X-Forwarded-For': '192.0.2.7',
+      'X-Beamroom-User': user,
+      ...(text && { 'Content-Type': 'application/json', 'Content-Length': Buffer.byteLength(text) }),
+    };
+    const sent = request({ socketPath, path: `/api/v1/plans/${path}`, method, agent: false, headers }, (answer) => {
+      let got = '';
+      answer.setEncoding('utf8');
+      answer.on('data', (part) => (got += part));
+      answer.on('end', () => done({ status: answer.statusCode, text: got, json: got ? JSON.parse(got) : undefined }));
+    });
+    sent.on('error', failed);
+    sent.end(text);
+  });
+
+test('it is found by the id that the plan has where people sign in, and is of planners who may read the identity', async () => {
+  await openPlan(daemon.url, 'swapped');
+  assert.equal((await document('swapped')).statement.state, 'used');
+  for (const client of clients.splice(0)) client.cut();
+  await daemon.stop();
+  const socket = join(data, 'http.sock');
+  const roles = { ann: 'reviewer+identity', ben: 'planner', cora: 'planner+identity' };
+  const grants = Object.entries(roles).flatMap(([who, role]) => ['--grant', `${plans} ${who} ${role}`]);
+  const own = await startDaemon({
+    plans: [plans],
+    data,
+    args: [
+      ...['--stub', '--sign-in', 'proxy', '--listen', `unix:${socket}`, '--proxy-user', userInfo().username],
+      ...['--public-name', 'beamroom.example', ...grants],
+    ],
+  });
+  try {
+    const plan = createHash('sha256')
+      .update(realpathSync(join(plans, 'swapped')))
+      .digest('hex')
+      .slice(0, 16); // prettier-ignore
+    const as = (user, ...rest) => askAs(socket, user, ...rest);
+    const read = (suits) =>
+      until(
+        async () => (await as('cora', plan)).json,
+        (now) => now.state === 'ready' && suits(now),
+      );
+    await until(
+      () => as('cora', `${plan}/open`, 'POST', {}),
+      ({ status }) => status < 300,
+    ); // prettier-ignore
+    assert.equal((await read(() => true)).statement.state, 'used');
+    const put = (user) =>
+      until(
+        () => as(user, `${plan}/statement`, 'POST', one),
+        ({ status }) => status !== 503,
+      ); // prettier-ignore
+    for (const user of ['ann', 'ben'])
+      for (const answer of [await put(user), await as(user, `${plan}/statement`, 'DELETE')])
+        assert.deepEqual([answer.status, answer.json.code], [403, 'role'], user);
+    assert.equal((await put('cora')).status, 204);
+    const replaced = await read(({ statement }) => statement.by === 'cora');
+    assert.equal(replaced.statement.state, 'used');
+    assert.equal((await as('cora', `${plan}/statement`, 'DELETE')).status, 204);
+    await read(({ statement }) => statement === null); // nor does that of before come back
+    assert.equal((await as('cora', `${plan}/statement`, 'DELETE')).status, 404);
+  } finally {
+    await own.stop();
+    await start();
+  }
+});
+
+const fill = `
+import json, sqlite3, sys
+db = sqlite3.connect(sys.argv[1])
+n = 4000 - db.execute('SELECT count(*) FROM statements').fetchone()[0]
+body = lambda i: json.dumps({'kind': 'one-person', 'words': 'one of many', 'revision': '', 'by': 'Ann', 'time_ms': 5, 'withdrawn_ms': 5 + i})
+db.executemany('INSERT INTO statements (plan, body) VALUES (?, ?)', [('gone-%d' % i, body(i)) for i in range(n)])
+db.commit()
+`;
+
+test('what was withdrawn makes place when as many are kept as may be', async () => {
+  await daemon.stop();
+  execFileSync('python3', ['-c', fill, join(data, 'beamroom.db')]);
+  await start();
+  await openPlan(daemon.url, 'swapped');
+  assert.equal((await state('swapped', one)).status, 204);
+  await loaded('swapped', ({ statement }) => statement?.state === 'used');
+  const left = `
+import sqlite3, sys
+db = sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True, timeout=30)
+print([row[0] for row in db.execute("SELECT plan FROM statements WHERE plan IN ('gone-0', 'gone-1', 'swapped') ORDER BY plan")])
+`;
+  const rows = () => execFileSync('python3', ['-c', left, join(data, 'beamroom.db')], { encoding: 'utf8' }).trim();
+  assert.equal(rows(), "['gone-1', 'swapped']");
 });
 
 test('a server that others may reach takes no statement', async () => {

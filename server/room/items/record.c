@@ -141,6 +141,8 @@ cJSON *room_record(const struct room *room)
         cJSON_AddStringToObject(json, "room_name", room->name);
     cJSON_AddStringToObject(json, "plan", room->plan_id);
     cJSON_AddStringToObject(json, "plan_revision", room->files.revision);
+    if (record_statement_ms(room) > 0)
+        cJSON_AddNumberToObject(json, "statement_ms", record_statement_ms(room));
     cJSON_AddNumberToObject(json, "revision", room->shared.revision);
     cJSON_AddNumberToObject(json, "made_ms", (double)clock_wall_ms());
     cJSON_AddNumberToObject(json, "created_ms", (double)room->created_at_s * 1000);

@@ -54,7 +54,23 @@ static bool check_optional(const cJSON *body, const char *name, size_t most, str
     return !value || (cJSON_IsString(value) && !value->valuestring[0]) || body_check_text(value, where, most, problem);
 }
 
-/* Revision and role: as they were kept, else those of now. */
+double record_statement_ms(const struct room *room)
+{
+    const cJSON *statement = cJSON_GetObjectItemCaseSensitive(room->shared.plan, "statement");
+    const char *state = json_text(statement, "state");
+    return state && strcmp(state, "used") == 0 ? json_number(statement, "time_ms", 0) : 0;
+}
+
+/* Whether it was written of the files that the room has read, and of the same patient. */
+static bool is_of_now(const struct room *room, const cJSON *body)
+{
+    const char *revision = json_text(body, "plan_revision");
+    const double statement_ms = json_number(body, "statement_ms", 0); /* of before there were statements: none */
+    return revision && strcmp(revision, room->files.revision) == 0 && !(statement_ms < record_statement_ms(room)) &&
+           !(statement_ms > record_statement_ms(room));
+}
+
+/* Revision, statement and role: as they were kept, else those of now. */
 static void give_place(const struct room *room, const cJSON *body, bool is_restored, cJSON *read)
 {
     const char *revision = is_restored ? json_text(body, "plan_revision") : room->files.revision;
@@ -62,6 +78,9 @@ static void give_place(const struct room *room, const cJSON *body, bool is_resto
     if (!is_restored && room->items->writer)
         role = wire_member_role_words.words[room->items->writer->role];
     cJSON_AddStringToObject(read, "plan_revision", revision && strlen(revision) <= 64 ? revision : "");
+    const double statement_ms = is_restored ? json_number(body, "statement_ms", 0) : record_statement_ms(room);
+    if (statement_ms > 0)
+        cJSON_AddNumberToObject(read, "statement_ms", statement_ms);
     cJSON_AddStringToObject(read, "role", role && strlen(role) < 16 ? role : "");
 }
 
@@ -88,8 +107,8 @@ static bool is_of_entry(const struct room *room, const struct item *item, const 
     if (item->kind != WIRE_ITEM_KIND_CHECK)
         return false;
     cJSON *row, *body = body_of(item, &row);
-    const char *found = json_text(body, "entry"), *revision = json_text(body, "plan_revision");
-    const bool is_of = found && revision && strcmp(found, entry) == 0 && strcmp(revision, room->files.revision) == 0;
+    const char *found = json_text(body, "entry");
+    const bool is_of = found && strcmp(found, entry) == 0 && is_of_now(room, body);
     cJSON_Delete(row);
     return is_of;
 }
@@ -192,7 +211,8 @@ static cJSON *read_fields(const struct room *room, const cJSON *body, const char
 cJSON *record_read_check(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
                          struct problem *problem)
 {
-    static const char *const names[] = { "entry", "text", "state", "comment", "plan_revision", "role", "seen", NULL };
+    static const char *const names[] = { "entry", "text", "state",        "comment", "plan_revision",
+                                         "role",  "seen", "statement_ms", NULL };
     cJSON *seen;
     if (!body_names_are(body, names, "/body", problem) ||
         !body_check_text(cJSON_GetObjectItemCaseSensitive(body, "text"), "/body/text", RECORD_MAX_ENTRY, problem) ||
@@ -210,7 +230,9 @@ cJSON *record_read_check(const struct room *room, const cJSON *body, const struc
 cJSON *record_read_decision(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
                             struct problem *problem)
 {
-    static const char *const names[] = { "decision", "text", "corrects", "plan_revision", "role", NULL };
+    static const char *const names[] = {
+        "decision", "text", "corrects", "plan_revision", "role", "statement_ms", NULL
+    };
     (void)before; /* never changed */
     if (!body_names_are(body, names, "/body", problem) ||
         !check_word(body, "decision", &wire_decision_words, problem) ||
@@ -241,8 +263,8 @@ static void give_proof(const struct identity *who, const cJSON *kept, cJSON *rea
 cJSON *record_read_signature(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
                              struct problem *problem)
 {
-    static const char *const names[] = { "name", "meaning",   "corrects", "plan_revision", "role", "signed_in",
-                                         "user", "proved_ms", NULL };
+    static const char *const names[] = { "name",      "meaning", "corrects",  "plan_revision", "role",
+                                         "signed_in", "user",    "proved_ms", "statement_ms",  NULL };
     const struct identity *who = is_restored || !room->items->writer ? NULL : who_acts(room, room->items->writer);
     const bool is_user = who && who_is_user(who); /* who signs then with the name of the sign-in */
     (void)before;                                 /* never changed */
@@ -338,11 +360,10 @@ bool record_may_change(const struct room *room, const struct member *member, con
     if (item->kind != WIRE_ITEM_KIND_CHECK)
         return true;
     cJSON *row, *body = body_of(item, &row);
-    const char *revision = json_text(body, "plan_revision");
-    const bool is_of_now = revision && strcmp(revision, room->files.revision) == 0;
+    const bool is_now = is_of_now(room, body);
     cJSON_Delete(row);
-    return is_of_now || problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
-                                    "this entry stands under an earlier revision of the plan's files, and stays");
+    return is_now || problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
+                                 "this entry stands under an earlier revision of the plan's files, and stays");
 }
 
 /* The act without its words. */
@@ -375,6 +396,8 @@ void record_audit(struct room *room, const struct item *item, const struct membe
             json_copy_text(act.detail, body, "name");
         json_copy_text(act.detail, body, "corrects");
         json_copy_text(act.detail, body, "plan_revision");
+        if (json_number(body, "statement_ms", 0) > 0)
+            cJSON_AddNumberToObject(act.detail, "statement_ms", json_number(body, "statement_ms", 0));
         cJSON_Delete(row);
     }
     if (record) {

@@ -16,14 +16,17 @@ enum {
 
 /* Like note_body_read. A check: {entry, text, state, comment}, entry "" for one that members added; a decision:
  * {decision, text, corrects}; a signature: {name, meaning, corrects}, of who has signed in without name. Read are also
- * plan_revision and role, which the server adds, of a signature signed_in, user and proved_ms, and of the check
- * "identity" that is OK whom its writer was told, masked: seen. */
+ * plan_revision, statement_ms and role, which the server adds, of a signature signed_in, user and proved_ms, and of the
+ * check "identity" that is OK whom its writer was told, masked: seen. */
 NODISCARD cJSON *record_read_check(const struct room *room, const cJSON *body, const struct item *before,
                                    bool is_restored, struct problem *problem);
 NODISCARD cJSON *record_read_decision(const struct room *room, const cJSON *body, const struct item *before,
                                       bool is_restored, struct problem *problem);
 NODISCARD cJSON *record_read_signature(const struct room *room, const cJSON *body, const struct item *before,
                                        bool is_restored, struct problem *problem);
+/* When it was said what the plan counts by now, of whom it is of; 0: it counts by its files alone. A part of the record
+ * stands under it as under the revision, as statement_ms. */
+double record_statement_ms(const struct room *room);
 /* Whether this member may write an item of this kind now; true for kinds that are not of the record. */
 bool record_may_write(const struct room *room, const struct member *member, enum wire_item_kind kind,
                       struct problem *problem);

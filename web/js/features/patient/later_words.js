@@ -23,6 +23,7 @@ export const say = sentences('patient.later', {
   cancelStatement: 'Cancel',
   countAsOne: 'The files of {n} patients count as of one person, stated by {by}, {date}: {words}',
   isOutdated: 'The files are others than those of which {by} stated on {date} whose they are: it does not count any more.',
+  isUnread: 'The files could not be read a second time: what {by} stated on {date} of whose they are does not count until they are.',
   isContradicted: 'The files name another patient than {by} stated on {date}: the files count.',
   onePerson: 'They are one person …',
   onePersonYes: 'They are one person',

@@ -39,9 +39,15 @@ export const wordOf = (words, id) => words.find(([word]) => word === id)?.[1] ??
 
 const entryOf = (row) => row.body.entry || row.id;
 
+/** The place of a line: the revision of the plan's files and, where one was used, when it was stated whom the plan is of. */
+export const placeOf = ({ plan_revision: revision, statement_ms: ms }) => (ms ? `${revision} ${ms}` : revision);
+
+/** Whether both places are of the same files: what was stated of whom they are is another then. */
+export const isOfFiles = (place, other) => place.split(' ')[0] === other.split(' ')[0];
+
 /** The entries under one revision, in the checklist's order, then those that members added: {key, entry, text, row: the item or null}. */
 export function entriesOf(rows, revision) {
-  const here = rows.filter(({ kind, body }) => kind === 'check' && body.plan_revision === revision);
+  const here = rows.filter(({ kind, body }) => kind === 'check' && placeOf(body) === revision);
   const marked = new Map(here.map((row) => [entryOf(row), row]));
   return [
     ...checklist.map(([id, text]) => ({ key: id, entry: id, text: marked.get(id)?.body.text ?? text, row: marked.get(id) ?? null })),
@@ -53,7 +59,7 @@ export function entriesOf(rows, revision) {
 
 /** Items of one kind under a revision, oldest first; corrected: those that a later one replaces. */
 export function linesOf(rows, kind, revision) {
-  const lines = rows.filter((row) => row.kind === kind && row.body.plan_revision === revision);
+  const lines = rows.filter((row) => row.kind === kind && placeOf(row.body) === revision);
   const corrected = new Set(
     rows
       .filter((row) => row.kind === kind)
@@ -67,8 +73,8 @@ export function linesOf(rows, kind, revision) {
 export function earlierRevisions(rows, revision) {
   const groups = new Map();
   for (const row of rows)
-    if (['check', 'decision', 'signature'].includes(row.kind) && row.body.plan_revision !== revision)
-      groups.set(row.body.plan_revision, [...(groups.get(row.body.plan_revision) ?? []), row]);
+    if (['check', 'decision', 'signature'].includes(row.kind) && placeOf(row.body) !== revision)
+      groups.set(placeOf(row.body), [...(groups.get(placeOf(row.body)) ?? []), row]);
   return [...groups]
     .map(([of, list]) => ({ revision: of, rows: list }))
     .sort((a, b) => b.rows.at(-1).created_ms - a.rows.at(-1).created_ms);

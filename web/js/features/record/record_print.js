@@ -2,7 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
 import { fetchRecord } from '../../net/record.js';
-import { decisions, entriesOf, linesOf, meanings, roles, states, wordOf } from './checklist.js';
+import { decisions, entriesOf, isOfFiles, linesOf, meanings, placeOf, roles, states, wordOf } from './checklist.js';
 import { printable } from '../../room/exports.js';
 import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
@@ -75,9 +75,9 @@ const asRows = (list, kind) => list.map((item) => ({ ...item, kind, body: item }
 
 function parts(record) {
   const rows = [...asRows(record.checklist, 'check'), ...asRows(record.decisions, 'decision'), ...asRows(record.signatures, 'signature')];
-  const revisions = [...new Set([record.plan_revision, ...rows.map(({ body }) => body.plan_revision).reverse()])];
+  const revisions = [...new Set([placeOf(record), ...rows.map(({ body }) => placeOf(body)).reverse()])];
   const title = (revision) => html`<h2>${say.earlierRevision({ revision: html`<code>${revision.slice(0, 12)}</code>` })}</h2>
-    <p class="values">${say.writtenBefore}</p>`;
+    <p class="values">${isOfFiles(revision, placeOf(record)) ? say.writtenBeforeStated : say.writtenBefore}</p>`;
   return html`${revisions.map((revision, at) => html`${at ? title(revision) : nothing}${under(rows, revision, at > 0)}`)}
     ${accepted(record)}${present(record)}${notes(record)}`;
 }

@@ -3,7 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
 import { signal } from '../../../lib/signals-core.js';
 import { fetchRecord } from '../../net/record.js';
-import { decisions, earlierRevisions, entriesOf, linesOf, meanings, roles, states, wordOf } from './checklist.js';
+import { decisions, earlierRevisions, entriesOf, isOfFiles, linesOf, meanings, placeOf, roles, states, wordOf } from './checklist.js';
 import { whenWords } from '../notes/threads.js';
 import { say } from './later_words.js';
 import { Record } from './record.js';
@@ -72,7 +72,8 @@ export function recordTab(world) {
   queueMicrotask(() => record.keep(`${room.planId.value} ${nLines} ${present}`));
   const facts = record.facts.value;
   if (!facts) return html`<p class="empty" role="status">${record.error.value || say.reading}</p>`;
-  const revision = facts.plan_revision;
+  const said = room.plan.value?.statement; // of now: the facts may be older
+  const revision = placeOf({ plan_revision: facts.plan_revision, statement_ms: said?.state === 'used' ? said.time_ms : 0 });
   return html`${head(facts)}${checks(world, rows, revision)}${decided(world, rows, revision)}${signed(world, rows, revision)}${attendance(facts)}${earlier(rows, revision)}${exports(world)}`;
 }
 
@@ -253,7 +254,7 @@ function earlier(rows, revision) {
   return groups.map(
     ({ revision: of, rows: list }) => html`<section class="block"><details class="record-earlier">
     <summary>${say.earlierRevision({ revision: revisionCode(of) })} <span class="dim">${say.nLines({ n: list.length })}</span></summary>
-    <p class="note">${say.filesChanged}</p>
+    <p class="note">${isOfFiles(of, revision) ? say.statedAnew : say.filesChanged}</p>
     <ol class="record-lines">${list.map((row) => html`<li>${words(row)}<span class="dim">${by(row)}</span></li>`)}</ol></details></section>`,
   );
 }
