@@ -47,7 +47,7 @@ test('each JSON answer but the description itself has a schema', () => {
 
 test('an answer that is not as described is seen', () => {
   const { schemas } = description.components;
-  const job = { id: 'open-1', kind: 'open', plan: null, state: 'done', phase: '', percent: 100, problem: null };
+  const job = { id: 'open-1', kind: 'open', plan: null, state: 'done', phase: '', percent: 100, created_ms: 1, problem: null };
   const found = (changed) => misfit(schemas['answer.job'], { ...job, ...changed }, schemas);
   assert.equal(found({}), '');
   for (const wrong of [{ state: 'gone' }, { percent: null }, { more: 1 }, { plan: 3 }, { problem: { type: 'x' } }])
