@@ -1,5 +1,6 @@
 /* POST /records/search: kept decisions and signatures by what a list says of them, page by page. What is looked for may
  * name a patient, so it stands in the body and in no address. */
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,11 +11,16 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_records.h"
 
-enum { MAX_TEXT = 200, LIMIT_BY_DEFAULT = 50, LIMIT_AT_MOST = 200, MAX_ROUNDS = 100 };
+enum {
+    MAX_TEXT = 200,
+    LIMIT_BY_DEFAULT = 50,
+    LIMIT_AT_MOST = 200,
+    MAX_SEARCHES = 4 /* at once: each may read all records */
+};
 
 struct search { /* while rows are read */
     char text[MAX_TEXT + 1], before[64], kind[16];
-    int limit, n_found, n_rounds;
+    int limit, n_found;
     bool is_cursor; /* before is being looked up: whether the caller may see it */
     bool has_more;
     cJSON *answer, *list;
@@ -28,6 +34,8 @@ static void search_destroy(struct search *search)
 
 static void end(struct call *call, struct search *search, const struct problem *problem)
 {
+    struct api *api = call->api;
+    api->n_searches--;
     call->context = NULL;
     if (problem) {
         call_answer_problem(call, problem);
@@ -45,9 +53,26 @@ static void end(struct call *call, struct search *search, const struct problem *
 static bool has_text(const char *in, const char *text)
 {
     const size_t n = strlen(text);
-    for (; n > 0 && in && *in && strncasecmp(in, text, n) != 0; in++)
-        continue;
-    return n == 0 || (in && *in);
+    const char first[] = { (char)tolower((unsigned char)text[0]), (char)toupper((unsigned char)text[0]), 0 };
+    if (n == 0)
+        return true;
+    for (in = in ? strpbrk(in, first) : NULL; in; in = strpbrk(in + 1, first))
+        if (strncasecmp(in, text, n) == 0)
+            return true;
+    return false;
+}
+
+/* False: is_found would not hold, which is known without a document for the row. Facts are JSON: a text stands in them
+ * as it is unless something there is written with a backslash. */
+static bool may_be_found(const struct search *search, const struct net_record *record)
+{
+    const char *const texts[] = { record->id, record->room, record->plan, record->author_name, record->facts };
+    if (search->kind[0] && strcmp(search->kind, record->kind) != 0)
+        return false;
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+        if (has_text(texts[i], search->text))
+            return true;
+    return record->facts && strchr(record->facts, '\\');
 }
 
 static bool is_found(const struct search *search, const cJSON *row)
@@ -67,7 +92,7 @@ static bool is_found(const struct search *search, const cJSON *row)
 static bool take_rows(const struct call *call, struct search *search, const struct net_record *records, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        if (!api_access_to_plan(call->api, call, ACCESS_LOOK, records[i].plan))
+        if (!may_be_found(search, &records[i]) || !api_access_to_plan(call->api, call, ACCESS_LOOK, records[i].plan))
             continue;
         cJSON *row = api_record_row(&records[i]);
         const bool is_wanted = is_found(search, row);
@@ -103,8 +128,7 @@ static void rows_were_read(void *context, const struct net_record *records, size
         return;
     }
     if (!is_cursor) {
-        const bool is_last = n < STORE_RECORDS_AT_ONCE || ++search->n_rounds == MAX_ROUNDS;
-        if (!take_rows(call, search, records, n) || is_last) {
+        if (!take_rows(call, search, records, n) || n < STORE_RECORDS_AT_ONCE) {
             end(call, search, NULL);
             return;
         }
@@ -165,6 +189,14 @@ void api_record_search(struct api *api, struct call *call)
     cJSON *body;
     if (!call_read_object(call, types, &body))
         return;
+    if (api->n_searches == MAX_SEARCHES) {
+        cJSON_Delete(body);
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the disk has too much to do to read records now");
+        problem.retry_after_ms = 1000;
+        call_answer_problem(call, &problem);
+        return;
+    }
+    api->n_searches++;
     struct search *search = mem_new(sizeof *search);
     *search = (struct search){ .limit = LIMIT_BY_DEFAULT, .answer = cJSON_CreateObject() };
     search->list = cJSON_AddArrayToObject(search->answer, "records");

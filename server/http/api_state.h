@@ -51,6 +51,7 @@ struct api {
     atomic_int n_printing;           /* PDFs under way */
     atomic_bool is_printing_stopped; /* by http_stop_printing */
     size_t n_files, n_timings;       /* under way */
+    size_t n_searches;               /* of records, under way */
     uint64_t n_jobs;                 /* ever made */
     _Atomic uint64_t n_calls[6],
         n_calls_us; /* by status / 100, and time spent; counted by the HTTP thread, read by /metrics */

@@ -183,7 +183,8 @@ struct store_record *records_read(sqlite3 *db, const char *id, const char *befor
                                      " records WHERE id = ?1 ORDER BY n DESC"
                                    : "SELECT id, room, plan, kind, author, author_name, time_ms, hash,"
                                      " coalesce(facts, '{}') FROM records LEFT JOIN record_facts ON record = n WHERE"
-                                     " ?2 = '' OR n < (SELECT max(n) FROM records WHERE id = ?2) ORDER BY n DESC",
+                                     " n < CASE ?2 WHEN '' THEN 9223372036854775807 ELSE"
+                                     " (SELECT max(n) FROM records WHERE id = ?2) END ORDER BY n DESC",
                           err)
             : NULL;
     bool ok = row != NULL;

@@ -162,3 +162,35 @@ test('a plan with a decision is deleted only so, its rooms are told by whom, and
   assert.deepEqual((await call(`${api}/records/${items[0].id}`)).json.item, items[0]);
   assert.equal((await call(`${api}/plans/new-one?by=${'x'.repeat(161)}`, 'DELETE')).json.pointer, '/by');
 });
+
+test('a search goes on to the oldest record, however many lie between, and says whether there are more', async () => {
+  const many = mkdtempSync(join(tmpdir(), 'beamroom-many-'));
+  let one = await startDaemon({ data: many, plans: [folder], args: ['--stub'] });
+  assert.equal(await one.stop(), 0);
+  const sql = `
+import sqlite3, sys
+db = sqlite3.connect(sys.argv[1])
+row = "INSERT INTO records(id, room, plan, kind, author, author_name, time_ms, item, body, hash) "
+db.execute(row + """WITH RECURSIVE all_of(n) AS (SELECT 0 UNION ALL SELECT n + 1 FROM all_of WHERE n < 100999)
+  SELECT printf('i-%010d', n), 'aaaa-aaaa', 'phantom', 'decision', '', iif(n = 0, 'Oldest Needle', 'Hay'), n, '{}', '{}', '' FROM all_of""")
+db.execute("INSERT OR REPLACE INTO record_facts(record, facts) SELECT n, json_object('decision', 'accept', 'label', iif(time_ms = 7, 'a \\\\ b', 'plain')) FROM records")
+db.commit()`;
+  execFileSync('python3', ['-c', sql, join(many, 'beamroom.db')]);
+  one = await startDaemon({ data: many, plans: [folder], args: ['--stub'] });
+  const found = async (body) => {
+    const { status, json, text } = await call(`${one.url}/api/v1/records/search`, 'POST', body);
+    assert.equal(status, 200, text);
+    return [json.records.map(({ id }) => Number(id.slice(2))), json.more];
+  };
+  assert.deepEqual(await found({ text: 'NEEDLE' }), [[0], false]);
+  assert.deepEqual(await found({ text: 'a \\ b' }), [[7], false], 'written otherwise in JSON');
+  assert.deepEqual(await found({ text: 'hay', limit: 2 }), [[100999, 100998], true]);
+  assert.deepEqual(await found({ text: 'hay', limit: 2, before: 'i-0000000003' }), [[2, 1], false]);
+  assert.deepEqual(await found({ text: 'no such', kind: 'signature' }), [[], false]);
+  const all = await Promise.all(Array.from({ length: 6 }, () => call(`${one.url}/api/v1/records/search`, 'POST', { text: 'needle' })));
+  assert.ok(all.some(({ status }) => status === 200));
+  for (const { status, json, headers } of all.filter((answer) => answer.status !== 200))
+    assert.deepEqual([status, json.type, headers.get('retry-after')], [503, '/problems/busy', '1']);
+  assert.equal(await one.stop(), 0);
+  rmSync(many, { recursive: true, force: true });
+});
