@@ -147,6 +147,14 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
       await pages.pat.getByRole('button', { name: 'Save', exact: true }).click();
       await pages.pat.locator('.row[data-key^="bookmark:i"]', { hasText: name }).waitFor();
     }
+    const draft = { enabled: true, line: { entry_mm: [0, -100, 0], target_mm: [0, 0, 0] } };
+    const drafted = await call(
+      `${world.daemon.url}/api/v1/rooms/${room}/scene`,
+      'PATCH',
+      { beam: { draft } },
+      { Cookie: who.pat, 'If-Match': '*' },
+    );
+    assert.equal(drafted.status, 200, drafted.text);
     assert.equal((await agenda()).state, 'planned', 'the meeting has not gone there');
     await pages.pat.context().close();
   });
@@ -246,15 +254,19 @@ describe('a meeting of three cases', { skip: missing && `${missing} is not there
     const { pat, fay } = pages;
     await heard(pat, /^“With axes”, the first of 2 views saved for this case, is shown\..*Undo/);
     await bar(pat).getByText('1 of 2').waitFor();
+    const isDraft = async () => (await scene(2)).beam.draft.enabled;
     await axesAre(2, true);
+    assert.equal(await isDraft(), false, 'a draft that is newer than the view stands aside');
     assert.deepEqual(await axe(pat), []);
     await shoot(pat, 'case-prepared');
     assert.equal(await bar(fay).count(), 0, 'of who presents alone');
     await pat.locator('#picture-1').focus();
     await pat.keyboard.press('Control+z');
     await axesAre(2, false);
+    assert.equal(await isDraft(), true, 'and is not lost');
     await pat.keyboard.press('Control+Shift+z');
     await axesAre(2, true);
+    assert.equal(await isDraft(), false);
     await pat.keyboard.press('PageDown');
     await bar(pat).getByText('2 of 2').waitFor();
     await axesAre(2, false);

@@ -10,9 +10,12 @@ import { bytesOf, full, header, missing, newer, shoot, startWorld } from './brow
 
 const sizes = {
   '2560x1440': { viewport: { width: 2560, height: 1440 } },
+  '2560x1440@2': { viewport: { width: 2560, height: 1440 }, deviceScaleFactor: 2 },
   '1600x1000': { viewport: { width: 1600, height: 1000 } },
+  '1440x900': { viewport: { width: 1440, height: 900 } },
   '1280x720': { viewport: { width: 1280, height: 720 } },
   '1180x820': { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true },
+  '820x1180': { viewport: { width: 820, height: 1180 }, hasTouch: true, isMobile: true },
   '390x844': { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
 const kinds = ['3-D', 'Axial', 'Sagittal', 'Coronal'];
@@ -338,7 +341,7 @@ describe("one planner's hour", { skip: missing && `${missing} is not there` }, (
         await press(undo);
         await comes(scene, (now) => crosshairOf(now)[2] === slice, 'the slice of before');
       } else {
-        await page.mouse.wheel(0, -100);
+        await page.mouse.wheel(0, -100 * (options.deviceScaleFactor ?? 1)); // the tool counts in the screen's pixels, the page is told its own
         await comes(scene, (now) => Math.abs(crosshairOf(now)[2] - slice - step[2]) < 0.1, `one slice up from ${slice} mm`);
       }
       await full(page, 2);
