@@ -9,6 +9,7 @@
 /* Rows of a caption. Items of one row stand beside each other, and go on below where the row is full. */
 enum annotation_row {
     ANNOTATION_TITLE, /* in a larger font */
+    ANNOTATION_WORDS, /* of whoever orders the picture */
     ANNOTATION_PANE,
     ANNOTATION_BEAM,
     ANNOTATION_REGIONS,

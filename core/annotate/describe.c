@@ -382,6 +382,33 @@ void annotations_name_patient(struct annotations *annotations, const struct plan
     (void)snprintf(annotations->items[annotations->patient - 1].text, ANNOTATION_TEXT_SIZE, "%s", words);
 }
 
+bool annotations_add_words(struct annotations *annotations, const char *words, struct error *err)
+{
+    size_t at = 0, n = 0;
+    struct annotation_item *items =
+        mem_array(annotations->n_items + ANNOTATE_MAX_WORDS, sizeof items[0], UINT64_MAX, err);
+    if (!items)
+        return false;
+    while (at < annotations->n_items && annotations->items[at].row == ANNOTATION_TITLE)
+        at++;
+    if (at > 0)
+        memcpy(items, annotations->items, at * sizeof items[0]);
+    for (const char *end; *words && n < ANNOTATE_MAX_WORDS; words = end) {
+        const char *mark = n + 1 < ANNOTATE_MAX_WORDS ? strstr(words, "; ") : NULL;
+        const size_t length = mark ? (size_t)(mark - words) : strlen(words);
+        end = mark ? mark + 2 : words + length;
+        items[at + n] = (struct annotation_item){ .row = ANNOTATION_WORDS };
+        (void)snprintf(items[at + n].text, ANNOTATION_TEXT_SIZE, "%.*s", (int)length, words);
+        n++;
+    }
+    if (annotations->n_items > at)
+        memcpy(items + at + n, annotations->items + at, (annotations->n_items - at) * sizeof items[0]);
+    free(annotations->items);
+    annotations->items = items;
+    annotations->n_items += n;
+    return true;
+}
+
 bool annotations_describe(struct annotations *annotations, const struct snapshot *snapshot, int width_px,
                           const char *date, struct error *err)
 {

@@ -8,8 +8,10 @@
 
 void pipeline_annotation_destroy(struct pipeline_annotation *annotation)
 {
-    if (annotation)
+    if (annotation) {
         free(annotation->text);
+        free(annotation->words);
+    }
     free(annotation);
 }
 
@@ -35,7 +37,8 @@ static bool annotate(struct picture *picture, struct error *err)
     struct annotations annotations;
     struct image *annotated = NULL;
     if (annotations_describe(&annotations, picture->request.snapshot, picture->image->width_px, annotation->date,
-                             err)) {
+                             err) &&
+        (!annotation->words || annotations_add_words(&annotations, annotation->words, err))) {
         if (annotation->is_named)
             annotations_name_patient(&annotations, picture->request.snapshot->plan);
         if (annotation->has_crosshair)

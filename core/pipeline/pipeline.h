@@ -19,6 +19,7 @@ struct pipeline_annotation {
     bool is_caption_apart; /* letters and scale bar alone */
     bool is_named;         /* the caption has the patient in full */
     bool has_crosshair;    /* on a slice */
+    char *words;           /* owned: of annotations_add_words; NULL: none */
 };
 void pipeline_annotation_destroy(struct pipeline_annotation *annotation);
 

@@ -77,6 +77,7 @@ static const struct {
     { "GET", "/api/v1/rooms/{room}/recordings", api_room_recordings },
     { "DELETE", "/api/v1/rooms/{room}/recordings/{recording}", api_room_recording_delete },
     { "GET", "/api/v1/rooms/{room}/recordings/{recording}/state", api_room_recording_state },
+    { "POST", "/api/v1/rooms/{room}/recordings/{recording}/video", api_room_recording_film },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
     { "POST", "/api/v1/rooms/{room}/video", api_room_film },
     { "POST", "/api/v1/rooms/{room}/exports", api_room_export },

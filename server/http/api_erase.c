@@ -3,6 +3,7 @@
 #include <strings.h>
 
 #include "server/http/api_audit.h"
+#include "server/http/api_films.h"
 #include "server/http/api_handlers.h"
 #include "server/http/call.h"
 #include "server/room/state/body_check.h"
@@ -58,6 +59,11 @@ void api_plan_erase(struct api *api, struct call *call)
          fleet_no_plan(fleet, call->ids[0], &problem)) && /* its folder and other id are known */
         net_erase_plan(api->net, call->ids[0], &call->identity, call->client, reason, was_erased, call, &problem);
     cJSON_Delete(body);
-    if (!is_begun)
+    if (!is_begun) {
         call_answer_problem(call, &problem);
+        return;
+    }
+    const char *const ids[] = { call->ids[0], plan.id, plan.other_id };
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++)
+        api_films_erase(api, ids[i]);
 }

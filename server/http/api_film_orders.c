@@ -13,9 +13,11 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/http/api_queries.h"
+#include "server/http/api_recordings.h"
+#include "server/http/film_meeting.h"
 
-static bool read_number(const cJSON *body, const char *name, double low, double high, bool is_whole, double *value,
-                        struct problem *problem)
+bool film_read_number(const cJSON *body, const char *name, const double range[2], bool is_whole, double *value,
+                      struct problem *problem)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(body, name);
     char where[32];
@@ -25,25 +27,24 @@ static bool read_number(const cJSON *body, const char *name, double low, double 
     if (!cJSON_IsNumber(item))
         return problem_set(problem, PROBLEM_VALIDATION, where, "type", "%.60s has the wrong type", name);
     *value = item->valuedouble;
-    if (*value >= low && *value <= high && (!is_whole || *value == floor(*value)))
+    if (*value >= range[0] && *value <= range[1] && (!is_whole || *value == floor(*value)))
         return true;
     if (is_whole)
         return problem_set(problem, PROBLEM_VALIDATION, where, "range",
-                           "the parameter %s is %g, expected a whole number from %.0f to %.0f", name, *value, low,
-                           high);
-    return problem_set(problem, PROBLEM_VALIDATION, where, "range", "%s is %g, expected %g to %g", name, *value, low,
-                       high);
+                           "the parameter %s is %g, expected a whole number from %.0f to %.0f", name, *value, range[0],
+                           range[1]);
+    return problem_set(problem, PROBLEM_VALIDATION, where, "range", "%s is %g, expected %g to %g", name, *value,
+                       range[0], range[1]);
 }
 
-static bool read_order(const cJSON *body, bool has_scene, struct film_order *order, struct problem *problem)
+bool film_check_fields(const cJSON *body, const char *const *known, struct problem *problem)
 {
-    static const char *const known[] = { "view", "degrees", "seconds", "fps", "quality", "identity", "scene" };
     const cJSON *item;
     cJSON_ArrayForEach(item, body)
     {
         bool is_known = false;
         char pointer[64];
-        for (size_t i = 0; i < sizeof known / sizeof known[0] - !has_scene; i++)
+        for (size_t i = 0; known[i]; i++)
             is_known = is_known || strcmp(item->string, known[i]) == 0;
         (void)snprintf(pointer, sizeof pointer, "/%.60s", item->string);
         if (!is_known)
@@ -54,18 +55,36 @@ static bool read_order(const cJSON *body, bool has_scene, struct film_order *ord
         if ((is_flag && !cJSON_IsBool(item)) || (is_document && !cJSON_IsObject(item)))
             return problem_set(problem, PROBLEM_VALIDATION, pointer, "type", "%.60s has the wrong type", item->string);
     }
+    return true;
+}
+
+static bool read_order(const cJSON *body, bool has_scene, struct film_order *order, struct problem *problem)
+{
+    static const char *const known[] = { "view", "degrees", "seconds", "fps", "quality", "identity", "scene", NULL },
+                             *const of_room[] = { "view", "degrees", "seconds", "fps", "quality", "identity", NULL };
+    if (!film_check_fields(body, has_scene ? known : of_room, problem))
+        return false;
     *order =
         (struct film_order){ .degrees = 360, .fps = 24, .quality = 80, .is_named = json_flag(body, "identity", false) };
     if (!cJSON_GetObjectItemCaseSensitive(body, "seconds"))
         return problem_set(problem, PROBLEM_VALIDATION, "/seconds", "required", "\"seconds\" is missing: 1 to %d",
                            API_MAX_FILM_S);
-    if (!read_number(body, "degrees", -360, 360, false, &order->degrees, problem) ||
-        !read_number(body, "seconds", 1, API_MAX_FILM_S, false, &order->seconds, problem) ||
-        !read_number(body, "fps", 1, API_MAX_FILM_FPS, true, &order->fps, problem) ||
-        !read_number(body, "quality", 1, 100, true, &order->quality, problem))
+    if (!film_read_number(body, "degrees", (const double[]){ -360, 360 }, false, &order->degrees, problem) ||
+        !film_read_number(body, "seconds", (const double[]){ 1, API_MAX_FILM_S }, false, &order->seconds, problem) ||
+        !film_read_number(body, "fps", (const double[]){ 1, API_MAX_FILM_FPS }, true, &order->fps, problem) ||
+        !film_read_number(body, "quality", (const double[]){ 1, 100 }, true, &order->quality, problem))
         return false;
     return order->degrees != 0 ||
            problem_set(problem, PROBLEM_VALIDATION, "/degrees", "range", "degrees is 0: nothing turns");
+}
+
+bool film_check_size(double width, double height, const char *pointer, struct problem *problem)
+{
+    return (width >= API_MIN_FILM_SIDE_PX && height >= API_MIN_FILM_SIDE_PX && width <= API_MAX_FILM_SIDE_PX &&
+            height <= API_MAX_FILM_SIDE_PX && width * height <= API_MAX_FILM_PIXELS) ||
+           problem_set(problem, PROBLEM_VALIDATION, pointer, "range",
+                       "a film of %g x %g: expected sides of %d to %d px and at most %d pixels", width, height,
+                       API_MIN_FILM_SIDE_PX, API_MAX_FILM_SIDE_PX, API_MAX_FILM_PIXELS);
 }
 
 static bool check_view(const cJSON *view, struct problem *problem)
@@ -77,15 +96,10 @@ static bool check_view(const cJSON *view, struct problem *problem)
     if (!kind || strcmp(kind, "3d") != 0)
         return problem_set(problem, PROBLEM_VALIDATION, "/view/kind", "enum",
                            "a film turns a view of the kind \"3d\", not one of the kind \"%.20s\"", kind ? kind : "");
-    return (width >= API_MIN_FILM_SIDE_PX && height >= API_MIN_FILM_SIDE_PX && width <= API_MAX_FILM_SIDE_PX &&
-            height <= API_MAX_FILM_SIDE_PX && width * height <= API_MAX_FILM_PIXELS) ||
-           problem_set(problem, PROBLEM_VALIDATION, "/view/size_px", "range",
-                       "a film of %g x %g: expected sides of %d to %d px and at most %d pixels", width, height,
-                       API_MIN_FILM_SIDE_PX, API_MAX_FILM_SIDE_PX, API_MAX_FILM_PIXELS);
+    return film_check_size(width, height, "/view/size_px", problem);
 }
 
-/* Makes the film and its job, and answers the call. Takes order->scene and order->view. */
-static void make_film(struct api *api, struct call *call, struct film_order *order)
+void film_order(struct api *api, struct call *call, struct film_order *order)
 {
     struct problem problem;
     order->user = call->identity.user;
@@ -93,6 +107,7 @@ static void make_film(struct api *api, struct call *call, struct film_order *ord
         (order->is_named && !api_may_name(api, call, order->plan_id, &problem))) {
         cJSON_Delete(order->scene);
         cJSON_Delete(order->view);
+        film_meeting_destroy(order->meeting);
         call_answer_problem(call, &problem);
         return;
     }
@@ -164,7 +179,7 @@ static void of_plan_when_ready(void *context, struct packet *answer, const struc
         order.room_id = "";
         order.scene = shown;
         order.view = view;
-        make_film(api, call, &order);
+        film_order(api, call, &order);
     } else {
         cJSON_Delete(view);
         call_answer_problem(call, &problem);
@@ -227,7 +242,7 @@ static void of_room_when_ready(void *context, struct packet *answer, const struc
         order.scene = shown;
         order.acceptances = room_acceptances(room);
         order.view = view;
-        make_film(api, call, &order);
+        film_order(api, call, &order);
     } else {
         cJSON_Delete(view);
         call_answer_problem(call, &problem);
@@ -259,18 +274,21 @@ static bool may_have(const struct api *api, const struct call *call, const struc
                    ? false
                    : problem_set(problem, PROBLEM_NOT_FOUND, "", "",
                                  "the film of the job \"%.63s\" is not kept any more", call->ids[0]);
+    if (film->is_of_meeting && !api_may_replay(api, call, film->plan_id, problem))
+        return false;
     return !film->is_named || api_may_name(api, call, film->plan_id, problem);
 }
 
 /* Ids need no quoting; a name of a plan or a patient never stands in it. */
-static void add_name(struct call *call, const struct api_job *job)
+static void add_name(struct call *call, const struct api_job *job, bool is_of_meeting)
 {
     const time_t seconds = (time_t)(job->created_ms / 1000);
     struct tm utc;
     char time[32], disposition[160];
     (void)gmtime_r(&seconds, &utc);
     (void)strftime(time, sizeof time, "%Y%m%dT%H%M%SZ", &utc);
-    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-turn-%s.webm\"", job->plan_id, time);
+    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%s-%s.webm\"", job->plan_id,
+                   is_of_meeting ? "meeting" : "turn", time);
     call_add_header(call, "Content-Disposition", disposition);
 }
 
@@ -299,6 +317,6 @@ void api_job_film(struct api *api, struct call *call)
     }
     if (!api_audit_export(api, call, film.is_named ? "film-named" : "film"))
         return;
-    add_name(call, job);
+    add_name(call, job, film.is_of_meeting);
     call_answer_shared(call, 200, "video/webm", call_bytes_ref(film.bytes));
 }

@@ -1,5 +1,5 @@
-/* Films of a turn about a plan: requested picture by picture, so that rooms are drawn between them and a job knows how
- * far it is. */
+/* Films of a turn about a plan, or of a recorded meeting: requested picture by picture, so that rooms are drawn between
+ * them and a job knows how far it is. */
 #include "server/http/api_films.h"
 
 #include <math.h>
@@ -9,6 +9,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/http/film_meeting.h"
 
 enum {
     MAX_BEGINNINGS = 3, /* a renderer that ends takes its films along: they begin anew */
@@ -23,9 +24,12 @@ struct api_film {
     int64_t renderer_number;  /* what the renderer calls it: another one each time it begins */
     char plan_id[64], room_id[64], user[IDENTITY_MAX_USER + 1]; /* room_id: "": of no room */
     cJSON *scene, *acceptances, *view;                          /* acceptances: NULL: none */
+    struct film_meeting *meeting;                               /* which gives scene and view; NULL: a turn */
+    char words[FILM_MEETING_WORDS];                             /* of the picture that is under way */
     double degrees, fps, quality;
-    bool is_named;
-    int n_pictures, n_done, n_beginnings;
+    bool is_named, is_of_meeting;
+    bool is_prepared, is_last;                      /* of the next picture, or that which is under way */
+    int n_pictures, n_done, n_frames, n_beginnings; /* n_pictures 0: not known; n_frames: of the picture */
     int64_t begun_us, again_us; /* again_us: when a picture that was refused as busy is asked for again; 0: none was */
     enum api_job_state state;
     struct problem problem;
@@ -38,6 +42,8 @@ static void free_documents(struct api_film *film)
     cJSON_Delete(film->acceptances);
     cJSON_Delete(film->view);
     film->scene = film->acceptances = film->view = NULL;
+    film_meeting_destroy(film->meeting);
+    film->meeting = NULL;
 }
 
 static void film_free(struct api_film *film)
@@ -182,19 +188,25 @@ static bool can_begin_anew(const struct api_film *film, const struct problem *pr
             (problem->type == PROBLEM_TIMEOUT && !is_open(film))); /* it was being read all the time */
 }
 
+/* Asks again for what was refused as busy, when that said or soon. */
+static void wait_again(struct api_film *film, const struct problem *busy)
+{
+    const int wait_ms = busy->retry_after_ms > 0 ? busy->retry_after_ms : BUSY_RETRY_MS;
+    film->again_us = clock_now_us() + wait_ms * INT64_C(1000);
+    net_look_at(film->api->net, film->again_us);
+}
+
 static void picture_came(void *context, struct packet *answer, const struct problem *problem)
 {
     struct api_film *film = context;
     film->request = 0;
     if (problem && problem->type == PROBLEM_BUSY) {
-        const int wait_ms = problem->retry_after_ms > 0 ? problem->retry_after_ms : BUSY_RETRY_MS;
-        film->again_us = clock_now_us() + wait_ms * INT64_C(1000);
-        net_look_at(film->api->net, film->again_us);
+        wait_again(film, problem);
     } else if (problem && can_begin_anew(film, problem)) {
         begin(film);
     } else if (problem) {
         end_film(film, JOB_FAILED, problem);
-    } else if (++film->n_done == film->n_pictures) {
+    } else if (film->is_prepared = false, film->n_done++, film->is_last) {
         take_film(film, answer);
     } else {
         request_picture(film);
@@ -208,6 +220,67 @@ static double turn_deg(const struct api_film *film)
     return film->degrees * film->n_done / n_steps;
 }
 
+/* ---- of a meeting ----------------------------------------------------------------------------------------------- */
+
+/* A part of a recording that is being read, for a film that may be gone by then. */
+struct film_reading {
+    struct api *api;
+    uint64_t number;
+    int n_beginnings;
+};
+
+static void part_came(void *context, const char *const *texts, size_t n, int64_t next_ms, const struct problem *problem)
+{
+    const struct film_reading reading = *(struct film_reading *)context;
+    struct api_film *film = find(reading.api, reading.number);
+    struct problem found = problem ? *problem : (struct problem){ 0 };
+    free(context);
+    if (!film || film->state != JOB_RUNNING || film->n_beginnings != reading.n_beginnings)
+        return;
+    if (n && film_meeting_take(film->meeting, texts, n, next_ms, &found))
+        request_picture(film);
+    else if (found.type == PROBLEM_BUSY)
+        wait_again(film, &found);
+    else
+        end_film(film, JOB_FAILED, &found);
+}
+
+static void read_part(struct api_film *film)
+{
+    struct problem problem;
+    struct film_reading *reading = mem_new(sizeof *reading);
+    *reading = (struct film_reading){ film->api, film->number, film->n_beginnings };
+    if (film_meeting_read(film->meeting, film->api->net, part_came, reading, &problem))
+        return;
+    free(reading);
+    if (problem.type == PROBLEM_BUSY)
+        wait_again(film, &problem);
+    else
+        end_film(film, JOB_FAILED, &problem);
+}
+
+/* Scene, view and words of the next picture. False: they are being read, or the film has ended. */
+static bool prepare_meeting(struct api_film *film)
+{
+    struct problem problem = { 0 };
+    struct film_meeting_picture picture;
+    const enum recorded_next next = film_meeting_next(film->meeting, &picture, &problem);
+    if (next == RECORDED_WANTED)
+        read_part(film);
+    else if (next == RECORDED_DAMAGED)
+        end_film(film, JOB_FAILED, &problem);
+    if (next != RECORDED_STEP)
+        return false;
+    cJSON_Delete(film->scene);
+    cJSON_Delete(film->view);
+    film->scene = picture.scene;
+    film->view = picture.view;
+    film->n_frames = picture.n_frames;
+    film->is_last = picture.is_last;
+    memcpy(film->words, picture.words, sizeof film->words);
+    return true;
+}
+
 static void request_picture(struct api_film *film)
 {
     struct fleet *fleet = net_fleet(film->api->net);
@@ -218,6 +291,11 @@ static void request_picture(struct api_film *film)
         end_film(film, JOB_FAILED, &problem);
         return;
     }
+    if (film->meeting && !film->is_prepared && !prepare_meeting(film))
+        return;
+    film->is_prepared = true; /* and is asked for again as it is, where it is refused as busy */
+    if (!film->meeting)
+        film->is_last = film->n_done + 1 == film->n_pictures;
     packet_init(&packet, PACKET_RENDER);
     packet.render.shown.scene = film->scene;
     packet.render.shown.acceptances = film->acceptances;
@@ -226,11 +304,14 @@ static void request_picture(struct api_film *film)
     packet.render.still = true;
     packet.render.annotations = true;
     packet.render.named = film->is_named;
-    packet.render.turn_deg = turn_deg(film);
+    packet.render.crosshair = film->is_of_meeting;
+    mem_put_text(packet.render.words, sizeof packet.render.words, film->words);
+    packet.render.turn_deg = film->is_of_meeting ? 0 : turn_deg(film);
+    packet.render.film_times = film->n_frames;
     packet.render.film = film->renderer_number;
     packet.render.film_at = film->n_done;
     packet.render.film_fps = (int64_t)film->fps;
-    packet.render.film_end = film->n_done + 1 == film->n_pictures;
+    packet.render.film_end = film->is_last;
     film->request = fleet_request(fleet, film->plan_id, &packet, picture_came, film);
 }
 
@@ -240,6 +321,9 @@ static void begin(struct api_film *film)
     struct problem problem;
     let_go(film);
     film->n_done = 0;
+    film->is_prepared = false;
+    if (film->meeting)
+        film_meeting_restart(film->meeting);
     film->n_beginnings++;
     film->renderer_number = (int64_t)(++film->api->n_film_beginnings);
     if (fleet_open(net_fleet(film->api->net), film->plan_id, &problem))
@@ -257,10 +341,15 @@ bool api_film_find(const struct api *api, uint64_t number, struct api_film_state
         *state = (struct api_film_state){ .state = film->state,
                                           .n_pictures = film->n_pictures,
                                           .n_done = film->n_done,
+                                          .percent = film->state == JOB_DONE ? 100
+                                                     : film->meeting         ? film_meeting_percent(film->meeting)
+                                                     : film->n_pictures      ? 100.0 * film->n_done / film->n_pictures
+                                                                             : 0,
                                           .problem = &film->problem,
                                           .plan_id = film->plan_id,
                                           .room_id = film->room_id,
                                           .is_named = film->is_named,
+                                          .is_of_meeting = film->is_of_meeting,
                                           .bytes = film->bytes };
     return film != NULL;
 }
@@ -283,6 +372,17 @@ void api_film_forget(struct api *api, uint64_t number)
             film_free(film);
             return;
         }
+}
+
+void api_films_erase(struct api *api, const char *plan_id)
+{
+    for (struct api_film *film = api->films; film; film = film->next) {
+        if (strcmp(film->plan_id, plan_id) != 0)
+            continue;
+        api_film_cancel(api, film->number);
+        call_bytes_unref(film->bytes);
+        film->bytes = NULL;
+    }
 }
 
 void api_films_destroy(struct api *api)
@@ -323,7 +423,10 @@ uint64_t api_film_make(struct api *api, const struct film_order *order)
                                .fps = order->fps,
                                .quality = order->quality,
                                .is_named = order->is_named,
-                               .n_pictures = (int)fmax(1, round(order->seconds * order->fps)),
+                               .meeting = order->meeting,
+                               .is_of_meeting = order->meeting != NULL,
+                               .n_frames = 1,
+                               .n_pictures = order->meeting ? 0 : (int)fmax(1, round(order->seconds * order->fps)),
                                .state = JOB_QUEUED };
     mem_put_text(film->plan_id, sizeof film->plan_id, order->plan_id);
     mem_put_text(film->room_id, sizeof film->room_id, order->room_id);

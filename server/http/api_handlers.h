@@ -37,6 +37,7 @@ void api_job(struct api *api, struct call *call);
 void api_job_cancel(struct api *api, struct call *call);
 void api_plan_film(struct api *api, struct call *call);
 void api_room_film(struct api *api, struct call *call);
+void api_room_recording_film(struct api *api, struct call *call);
 void api_job_film(struct api *api, struct call *call);
 void api_plan_render(struct api *api, struct call *call);
 void api_plan_surface(struct api *api, struct call *call);

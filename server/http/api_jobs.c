@@ -41,9 +41,11 @@ static void update_film(const struct api *api, struct api_job *job)
     if (!api_film_find(api, job->film, &film))
         return;
     job->state = film.state;
-    job->percent = 100.0 * film.n_done / film.n_pictures;
+    job->percent = film.percent;
     if (film.state == JOB_QUEUED)
         (void)snprintf(job->phase, sizeof job->phase, "other films are made first");
+    else if (film.state == JOB_RUNNING && film.n_pictures == 0)
+        (void)snprintf(job->phase, sizeof job->phase, "picture %d", film.n_done + 1);
     else if (film.state == JOB_RUNNING)
         (void)snprintf(job->phase, sizeof job->phase, "picture %d of %d", film.n_done + 1, film.n_pictures);
     else

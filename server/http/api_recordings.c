@@ -10,10 +10,21 @@
 #include "server/http/api_queries.h"
 #include "server/http/api_recordings.h"
 
+void api_recording_is_missing(const struct call *call, struct problem *problem)
+{
+    (void)problem_set(problem, PROBLEM_NOT_FOUND, "", "", "the room has no recording \"%.63s\"", call->ids[1]);
+}
+
+bool api_may_replay(const struct api *api, const struct call *call, const char *plan_id, struct problem *problem)
+{
+    return call->identity.source == IDENTITY_MACHINE || api_access_to_plan(api, call, ACCESS_MEET, plan_id) ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "", "", "you may not play recordings of this plan");
+}
+
 static void answer_missing(struct call *call)
 {
     struct problem problem;
-    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the room has no recording \"%.63s\"", call->ids[1]);
+    api_recording_is_missing(call, &problem);
     call_answer_problem(call, &problem);
 }
 

@@ -60,13 +60,23 @@ static struct films_entry *find_place(struct films *films)
     return place;
 }
 
+/* A line is less than twice as high as its text. */
+static int spare_px(const struct packet_render *render)
+{
+    const double width_px =
+        cJSON_GetNumberValue(cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(render->shown.view, "size_px"), 0));
+    if (!render->words[0] || !(width_px > 0))
+        return 2 * FILM_SPARE_LINES * annotate_text_px(ANNOTATE_MIN_WIDTH_PX);
+    return 2 * FILM_SPARE_LINES_WORDS * annotate_text_px((int)width_px);
+}
+
 static bool begin(struct films_entry *entry, const struct packet_render *render, struct problem *problem)
 {
     struct error err = { 0 };
     const struct film_options options = { .fps = (int)render->film_fps,
                                           .quality = (int)render->quality,
                                           .n_threads = ENCODER_THREADS,
-                                          .spare_px = 2 * FILM_SPARE_LINES * annotate_text_px(ANNOTATE_MIN_WIDTH_PX),
+                                          .spare_px = spare_px(render),
                                           .max_bytes = FILM_MAX_BYTES };
     forget(entry);
     *entry = (struct films_entry){ .number = render->film, .film = film_create(&options, &err) };

@@ -7,7 +7,8 @@
 enum {
     FILMS_MAX = 4,             /* at once; a further one takes the place of that which waits longest for a picture */
     FILM_MAX_BYTES = 32 << 20, /* of one; then it fails with PROBLEM_LIMIT */
-    FILM_SPARE_LINES = 2       /* of a caption that grows after the first picture */
+    FILM_SPARE_LINES = 2,      /* of a caption that grows after the first picture */
+    FILM_SPARE_LINES_WORDS = 6 /* likewise, where what is shown changes: of a meeting */
 };
 
 struct films;

@@ -208,6 +208,7 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         drawn.annotation->is_caption_apart = render->caption_apart;
         drawn.annotation->is_named = render->named;
         drawn.annotation->has_crosshair = render->crosshair;
+        drawn.annotation->words = render->words[0] ? mem_copy_text(render->words) : NULL;
     }
     if (render->film && !(drawn.film = films_begin_picture(pictures->films, render, &problem))) {
         snapshot_unref(snapshot);
@@ -273,10 +274,10 @@ static cJSON *missing_of(const struct picture_request *request)
 }
 
 static const char *const row_words[ANNOTATION_N_ROWS] = {
-    [ANNOTATION_TITLE] = "title",     [ANNOTATION_PANE] = "pane",       [ANNOTATION_BEAM] = "beam",
-    [ANNOTATION_REGIONS] = "regions", [ANNOTATION_DOSE] = "dose",       [ANNOTATION_LEVELS] = "levels",
-    [ANNOTATION_METHODS] = "methods", [ANNOTATION_MISSING] = "missing", [ANNOTATION_ORIGIN] = "origin",
-    [ANNOTATION_USE] = "use"
+    [ANNOTATION_TITLE] = "title",   [ANNOTATION_WORDS] = "words",     [ANNOTATION_PANE] = "pane",
+    [ANNOTATION_BEAM] = "beam",     [ANNOTATION_REGIONS] = "regions", [ANNOTATION_DOSE] = "dose",
+    [ANNOTATION_LEVELS] = "levels", [ANNOTATION_METHODS] = "methods", [ANNOTATION_MISSING] = "missing",
+    [ANNOTATION_ORIGIN] = "origin", [ANNOTATION_USE] = "use"
 };
 
 /* The caption as [{row, rgb, text}], at most MAX_CAPTION_ITEMS. NULL: no memory for it. */

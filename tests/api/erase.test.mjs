@@ -158,11 +158,19 @@ test('nothing on the disk names the patient after an uploaded plan was erased, a
 test('a folder that was given stays, and everything that was made of it goes', async (t) => {
   const { data, daemon, api, plan } = await begin({ isGiven: true });
   t.after(() => daemon.stop());
+  const order = { seconds: 1, fps: 1, view: { kind: '3d', size_px: [240, 240] } };
+  const film = `${api}/jobs/${(await call(`${api}/plans/${plan}/video`, 'POST', order)).json.id}`;
+  await until(
+    () => call(film),
+    ({ json }) => json.state === 'done',
+  );
+  assert.equal((await call(`${film}/video`)).status, 200);
   const { status, json } = await call(`${api}/plans/${plan}/erase`, 'POST', { reason: 'asked' });
   assert.deepEqual([status, json], [200, { rooms: 1, records: 1 }], daemon.log());
   assert.deepEqual(found(data), []);
   assert.ok(readdirSync(join(given, 'quirin-zweifel')).length > 2);
   assert.equal((await call(`${api}/plans/${plan}`)).status, 200);
+  assert.equal((await call(`${film}/video`)).status, 404, 'a film that was made of it is in memory no more');
 });
 
 test('a kill leaves all of it, or nothing: what was begun is finished by the next start', async () => {

@@ -1,9 +1,11 @@
 // A made-up renderer for films: it draws nothing, writes each packet about a film into packets.jsonl beside it, and does what a film's quality says.
-// quality 2: its pictures never come; 3: the film has 31 MiB; 4: its third picture is refused as busy, once; 5: its second one was too slow.
-import { appendFileSync, readSync, writeSync } from 'node:fs';
+// quality 2: its pictures never come; 3: the film has 31 MiB; 4: its third picture is refused as busy, once; 5: its second one was too slow;
+// 6: the process ends at its second one, once.
+import { appendFileSync, existsSync, readSync, writeFileSync, writeSync } from 'node:fs';
 import { argv } from 'node:process';
 
 const log = new URL('packets.jsonl', import.meta.url);
+const ended = new URL('ended', import.meta.url);
 const magic = 0x4b505242; // proto/packets.json
 
 function writeAll(bytes) {
@@ -25,18 +27,22 @@ function read(n) {
   return bytes;
 }
 
-let wasBusy = false;
+const wereBusy = new Set();
 function draw({ id, quality, film, film_at: at, film_end: isLast }) {
   const problem = (type, more) => send({ type: 'problem', id, problem: { type: `/problems/${type}`, detail: type, ...more } });
   if (quality === 2 && film) return;
-  if (quality === 4 && at === 2 && !wasBusy) {
-    wasBusy = true;
+  if (quality === 4 && at === 2 && !wereBusy.has(film)) {
+    wereBusy.add(film);
     problem('busy', { retry_after_ms: 900 });
     return;
   }
   if (quality === 5 && at === 1) {
     problem('timeout');
     return;
+  }
+  if (quality === 6 && at === 1 && !existsSync(ended)) {
+    writeFileSync(ended, '');
+    process.exit(1);
   }
   const film_bytes = Buffer.alloc(quality === 3 ? 31 << 20 : 64);
   film_bytes.writeUInt32BE(0x1a45dfa3); // EBML
@@ -51,9 +57,9 @@ for (;;) {
   const head = read(12);
   const packet = JSON.parse(read(head.readUInt32LE(4)));
   read(head.readUInt32LE(8));
-  const { type, id, film = 0, film_at, quality, named } = packet;
+  const { type, id, film = 0, film_at, quality, named, words, film_times: times = 1 } = packet;
   if (type === 'ping') send({ type: 'pong' });
-  if (film) appendFileSync(log, `${JSON.stringify({ type, film, film_at, quality, named, ms: Date.now() })}\n`);
+  if (film) appendFileSync(log, `${JSON.stringify({ type, film, film_at, quality, named, words, times, ms: Date.now() })}\n`);
   if (type === 'render') draw(packet);
   if (type === 'await_ready') send({ type: 'answer', id, body: {} });
 }

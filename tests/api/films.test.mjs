@@ -5,6 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { bin, call, demo, startDaemon, until } from './daemon.mjs';
+import { Client } from './ws_client.mjs';
 
 let folder, daemon, api;
 
@@ -140,4 +141,57 @@ test('jobs that open plans do not push out a film, neither one that is made nor 
   assert.equal((await call(`${api}/jobs/${done}/video`)).status, 200);
   assert.equal((await job(opened.id)).state, 'done', 'jobs after the 500th are kept as others');
   assert.equal((await call(`${api}/jobs/${running}`, 'DELETE')).json.state, 'cancelled');
+});
+
+test('a film of a recorded meeting is named, refused as busy, cancelled and begun anew as any other', async () => {
+  const room = `${api}/rooms/${(await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id}`;
+  const ann = await Client.enter(daemon.url, room.split('/').at(-1), { name: 'Ann' });
+  await ann.message('renderer', ({ state }) => state === 'ready');
+  ann.send({ type: 'recording.start' });
+  const recordings = async () => (await call(`${room}/recordings`)).json.recordings;
+  await until(recordings, (all) => all.length === 1 && all[0].length_ms > 2200);
+  ann.send({ type: 'recording.stop' });
+  const [{ id: recording, length_ms: lengthMs }] = await until(recordings, ([{ state }]) => state !== 'running');
+  ann.cut();
+  const fps = 5;
+  const made = async (quality, more = {}) => {
+    const { status, json, text } = await call(`${room}/recordings/${recording}/video`, 'POST', { quality, fps, ...more });
+    assert.equal(status, 202, text);
+    return json.id;
+  };
+  const nFrames = Math.ceil((lengthMs * fps) / 1000);
+  /** The places, words and frames of the pictures of the newest film of this quality. */
+  const pictures = (quality) =>
+    about(quality).map(({ film_at: at = 0, words, times, named = false, type }) => ({ at, words, times, named, type }));
+  const frames = (list) => list.reduce((sum, { times }) => sum + times, 0);
+
+  assert.equal((await ended(await made(90, { identity: true }))).state, 'done');
+  const named = pictures(90);
+  assert.deepEqual([frames(named), named.every((one) => one.named)], [nFrames, true]);
+  assert.match(named[0].words, /^Recorded meeting, [\d-]+ [\d:]+ UTC, 0:00:00 of 0:00:0\d; presenting: Ann$/);
+
+  assert.equal((await ended(await made(4))).state, 'done');
+  const busy = pictures(4);
+  assert.deepEqual(busy.map(({ at }) => at).slice(0, 4), [0, 1, 2, 2]);
+  assert.deepEqual(busy[2], busy[3], 'the same picture again');
+  assert.equal(frames(busy.filter((_, n) => n !== 3)), nFrames);
+  assert.ok(busy.every((one) => !one.named));
+
+  const long = await made(2);
+  await until(
+    () => about(2),
+    ({ length }) => length === 1,
+  );
+  assert.equal((await call(`${api}/jobs/${long}`, 'DELETE')).json.state, 'cancelled');
+  await until(
+    () => about(2),
+    (all) => all.at(-1).type === 'drop',
+  );
+  assert.equal((await call(`${api}/jobs/${long}/video`)).status, 409);
+
+  const again = await made(6);
+  assert.equal((await ended(again)).state, 'done');
+  assert.equal(frames(pictures(6)), nFrames, 'from its beginning');
+  const { headers } = await call(`${api}/jobs/${again}/video`);
+  assert.match(headers.get('content-disposition'), /filename="phantom-meeting-\d{8}T\d{6}Z\.webm"/);
 });

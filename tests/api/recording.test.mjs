@@ -5,6 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { call, startDaemon, until } from './daemon.mjs';
+import { webm } from './webm.mjs';
 import { Client } from './ws_client.mjs';
 
 let data, daemon, api;
@@ -52,6 +53,8 @@ test('a meeting is recorded, and what it was can be read at each time, also afte
   assert.equal(begun.state, 'running');
   assert.equal(begun.by_name, 'Ann');
   id = begun.id;
+  const early = await call(`${api}/rooms/${room}/recordings/${id}/video`, 'POST', {});
+  assert.deepEqual([early.status, early.json.type], [409, '/problems/conflict'], 'its film waits for its end');
   const cem = await enter(room, { name: 'Cem' });
   assert.equal((await cem.message('recording')).id, id, 'who enters is told');
   for (const [n, position_mm] of [
@@ -92,6 +95,57 @@ test('a meeting is recorded, and what it was can be read at each time, also afte
   for (const moment of moments) assert.deepEqual((await stateAt(room, id, moment.t_ms)).scene, moment.scene);
   assert.equal((await call(`${api}/rooms/${room}/recordings/${id}/state`)).status, 422);
   assert.equal((await call(`${api}/rooms/${room}/recordings/none/state?t_ms=1`)).status, 404);
+});
+
+const goesOn = ({ state }) => ['queued', 'running'].includes(state);
+/** The film of an order, as it says of itself. */
+async function filmOf(order) {
+  const made = await call(`${api}/rooms/${room}/recordings/${id}/video`, 'POST', { size_px: [320, 240], ...order });
+  assert.equal(made.status, 202, made.text);
+  assert.deepEqual([made.json.kind, made.json.plan], ['film', 'phantom']);
+  const job = await until(
+    async () => (await call(`${api}/jobs/${made.json.id}`)).json,
+    (one) => !goesOn(one),
+  );
+  assert.deepEqual([job.state, job.percent, job.problem], ['done', 100, null]);
+  const film = await fetch(`${api}/jobs/${made.json.id}/video`);
+  assert.deepEqual([film.status, film.headers.get('content-type')], [200, 'video/webm']);
+  return webm(Buffer.from(await film.arrayBuffer()));
+}
+
+test('a film of it is as long as the part that was ordered, or shorter by its pauses', async () => {
+  const [{ length_ms }] = await list(room);
+  const whole = await filmOf({ fps: 2 });
+  assert.equal(whole.nFrames, Math.ceil((length_ms * 2) / 1000));
+  assert.equal(whole.ms, whole.nFrames * 500);
+  assert.equal(whole.width, 320);
+  assert.ok(whole.height > 240, 'the caption stands below');
+  const part = await filmOf({ fps: 10, from_ms: moments[0].t_ms, to_ms: moments[0].t_ms + 450 });
+  assert.equal(part.nFrames, 5);
+});
+
+test('an order for a film of it outside its limits is refused, and says which field', async () => {
+  const wrong = [
+    [{ fps: 16 }, '/fps'],
+    [{ fps: 1.5 }, '/fps'],
+    [{ from_ms: -1 }, '/from_ms'],
+    [{ from_ms: 40000000 }, '/from_ms'],
+    [{ to_ms: 'end' }, '/to_ms'],
+    [{ from_ms: 5, to_ms: 5 }, '/from_ms'],
+    [{ pauses_s: 61 }, '/pauses_s'],
+    [{ quality: 0 }, '/quality'],
+    [{ size_px: [100, 100] }, '/size_px'],
+    [{ size_px: [1920, 1200] }, '/size_px'],
+    [{ size_px: [640.5, 480] }, '/size_px'],
+    [{ size_px: [640] }, '/size_px'],
+    [{ identity: 1 }, '/identity'],
+    [{ seconds: 3 }, '/seconds'],
+  ];
+  for (const [order, pointer] of wrong) {
+    const answer = await call(`${api}/rooms/${room}/recordings/${id}/video`, 'POST', order);
+    assert.deepEqual([answer.status, answer.json.pointer], [422, pointer], JSON.stringify(order));
+  }
+  assert.equal((await call(`${api}/rooms/${room}/recordings/none/video`, 'POST', {})).status, 404);
 });
 
 test('a room that plays it draws byte for byte the same pictures, and changes nothing before it is left', async () => {

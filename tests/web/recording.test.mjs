@@ -53,6 +53,33 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
     await shoot(replay, 'replay');
   });
 
+  it('is ordered as a film in the list of recordings, made while the page goes on, and saved', async () => {
+    const room = await world.newRoom();
+    const ann = await enterAs(world, `rooms/${room}`, 'Dr Ann');
+    await full(ann);
+    await open(ann);
+    await action(ann, 'Record meeting').click();
+    await ann.locator('.chip-recorded:visible').waitFor();
+    await open(ann);
+    await action(ann, 'End recording').click();
+    await open(ann);
+    const film = ann.getByRole('button', { name: /^Film of the recording/ }).locator('visible=true');
+    await film.click();
+    const dialog = ann.getByRole('dialog', { name: /^Film of the meeting of \d{4}-\d\d-\d\d \d\d:\d\d$/ });
+    await dialog.waitFor();
+    assert.deepEqual(await axe(ann), []);
+    await shoot(ann, 'film-of-meeting');
+    await dialog.getByRole('radio', { name: '640 × 480' }).click();
+    await dialog.getByRole('radio', { name: '2', exact: true }).click();
+    await dialog.getByRole('button', { name: 'Make the film' }).press('Enter');
+    const saves = dialog.getByRole('button', { name: 'Save the film' });
+    await saves.waitFor({ timeout: 120000 });
+    const [download] = await Promise.all([ann.waitForEvent('download'), saves.click()]);
+    assert.match(download.suggestedFilename(), /^phantom-meeting-\d{8}T\d{6}Z\.webm$/);
+    assert.deepEqual(world.errors, []);
+    await ann.context().close();
+  });
+
   it('that cannot be read says so in its replay', async () => {
     const room = await world.newRoom();
     const ann = await enterAs(world, `rooms/${room}`, 'Dr Ann');

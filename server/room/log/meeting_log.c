@@ -218,6 +218,37 @@ bool meeting_log_take(struct meeting_log *log, int64_t t_ms, struct log_batch *b
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
+cJSON *meeting_log_read_all(const char *const *texts, size_t n, struct problem *problem)
+{
+    cJSON *all = cJSON_CreateArray();
+    bool ok = all && n > 0;
+    for (size_t i = 0; ok && i < n; i++) {
+        cJSON *events = meeting_log_read(texts[i], strlen(texts[i]), problem);
+        ok = events != NULL;
+        if (!ok || !events->child) {
+            cJSON_Delete(events);
+            continue;
+        }
+        cJSON *first = events->child, *last = first->prev; /* appended as a whole: the lists may be long */
+        events->child = NULL;
+        cJSON_Delete(events);
+        if (!all->child) {
+            all->child = first;
+            continue;
+        }
+        cJSON *end = all->child->prev;
+        end->next = first;
+        first->prev = end;
+        all->child->prev = last;
+    }
+    if (ok && all->child)
+        return all;
+    if (problem->type == PROBLEM_NONE)
+        problem_set(problem, PROBLEM_STORAGE, "", "", "nothing of it is on the disk");
+    cJSON_Delete(all);
+    return NULL;
+}
+
 int64_t log_event_ms(const cJSON *event)
 {
     return (int64_t)json_number(event, "t_ms", -1);

@@ -57,6 +57,8 @@ const cJSON *meeting_log_state(const struct meeting_log *log);
 /* The events of a batch, checked: times that do not go back, parts, ids, documents that are objects. NULL with
  * problem. */
 NODISCARD cJSON *meeting_log_read(const char *text, size_t n, struct problem *problem);
+/* All events of the batches as one list, at least one. NULL with problem. */
+NODISCARD cJSON *meeting_log_read_all(const char *const *texts, size_t n, struct problem *problem);
 int64_t log_event_ms(const cJSON *event);
 bool log_event_is_state(const cJSON *event);
 /* The state after the event, in the stead of *state (NULL: none yet, and only a complete state can be applied).

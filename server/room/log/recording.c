@@ -126,6 +126,14 @@ bool recording_plan_sum(const struct room *room, char digits[20])
     return ok;
 }
 
+bool room_plan_differs(const struct room *room, const struct room_recording *recording)
+{
+    const char *then = recording->plan_revision, *now = room->files.revision;
+    char sum[20];
+    return !recording_plan_sum(room, sum) || strcmp(sum, recording->plan_sum) != 0 ||
+           (then[0] && now[0] && strcmp(then, now) != 0);
+}
+
 bool recording_wants_revision(const struct room *room)
 {
     return room->recorder && !room->recorder->facts->plan_revision[0];

@@ -229,38 +229,6 @@ static bool reach(struct room *room, int64_t t_ms)
     return true;
 }
 
-/* All events of the texts as one list; NULL with problem. */
-static cJSON *read_texts(const char *const *texts, size_t n, struct problem *problem)
-{
-    cJSON *all = cJSON_CreateArray();
-    bool ok = all && n > 0;
-    for (size_t i = 0; ok && i < n; i++) {
-        cJSON *events = meeting_log_read(texts[i], strlen(texts[i]), problem);
-        ok = events != NULL;
-        if (!ok || !events->child) {
-            cJSON_Delete(events);
-            continue;
-        }
-        cJSON *first = events->child, *last = first->prev; /* appended as a whole: the lists may be long */
-        events->child = NULL;
-        cJSON_Delete(events);
-        if (!all->child) {
-            all->child = first;
-            continue;
-        }
-        cJSON *end = all->child->prev;
-        end->next = first;
-        first->prev = end;
-        all->child->prev = last;
-    }
-    if (ok && all->child)
-        return all;
-    if (problem->type == PROBLEM_NONE)
-        problem_set(problem, PROBLEM_STORAGE, "", "", "nothing of it is on the disk");
-    cJSON_Delete(all);
-    return NULL;
-}
-
 /* A part of the log begins with a complete state, and holds the time it was asked for: what begins later is the first
  * that there is. False with problem: it would be read for ever, or be applied to another state. */
 static bool fits(const struct replay *replay, const cJSON *events, int64_t next_ms, struct problem *problem)
@@ -279,7 +247,7 @@ void replay_came(struct room *room, const char *const *texts, size_t n, int64_t 
     if (!replay)
         return;
     replay->is_reading = false;
-    cJSON *events = read_texts(texts, n, &found);
+    cJSON *events = meeting_log_read_all(texts, n, &found);
     if (!events || !fits(replay, events, next_ms, &found)) {
         cJSON_Delete(events);
         fail(room, &found);

@@ -1,5 +1,6 @@
 #pragma once
 /* Recordings of meetings in a room, and rooms that play one. Included by room.h. */
+#include "server/room/log/recorded_walk.h"
 #include "server/room/state/room_types.h"
 
 const struct room_recording *room_recording(const struct room *room, const char *id); /* NULL: there is none */
@@ -14,4 +15,6 @@ void room_recording_restart(struct room *room);
  * t_ms on. NULL with problem. */
 NODISCARD cJSON *room_recorded_state(const char *const *texts, size_t n, int64_t t_ms, struct problem *problem);
 
+/* Whether the plan is another one than when this was recorded, or its files are, as far as that is known. */
+bool room_plan_differs(const struct room *room, const struct room_recording *recording);
 bool room_replays(const struct room *room);

@@ -207,7 +207,7 @@ export function roster(world) {
   )}</ul>
     ${locked ? html`<p class="dim roster-locked">${say.lockedNote}</p>` : nothing}
     <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
-    ${walls(room)}${recordings({ room, ui, api }, avatar)}
+    ${walls(room)}${recordings(world, avatar)}
     ${ownName.isFixed.value ? nothing : nameForm({ room, ui, ownName })}`;
 }
 

@@ -89,6 +89,27 @@ static double ten(struct vec3 p)
     return 10 + 0 * p.x;
 }
 
+static void words_of_the_asker_stand_below_the_title_item_by_item(void **state)
+{
+    (void)state;
+    struct annotations words = { .n_items = 0 };
+    struct error err = { 0 };
+    assert_true(annotations_add_words(&words, "alone", &err)); /* of no other item */
+    assert_string_equal(row_text(&words, ANNOTATION_WORDS), "alone");
+    annotations_finish(&words);
+    words.items = mem_array(2, sizeof words.items[0], UINT64_MAX, &err);
+    assert_non_null(words.items);
+    words.items[0] = (struct annotation_item){ .row = ANNOTATION_TITLE, .text = "Plan" };
+    words.items[1] = (struct annotation_item){ .row = ANNOTATION_PANE, .text = "Axial" };
+    words.n_items = 2;
+    assert_true(annotations_add_words(&words, "a; b; c;d; e; f; g; h", &err));
+    assert_string_equal(row_text(&words, ANNOTATION_WORDS), "a|b|c;d|e|f|g; h"); /* nothing is left out */
+    assert_int_equal(words.items[0].row, ANNOTATION_TITLE);
+    assert_int_equal(words.items[words.n_items - 1].row, ANNOTATION_PANE);
+    assert_int_equal(words.n_items, 2 + ANNOTATE_MAX_WORDS);
+    annotations_finish(&words);
+}
+
 static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
 {
     (void)state;
@@ -424,6 +445,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_snapshot_is_described),
+        cmocka_unit_test(words_of_the_asker_stand_below_the_title_item_by_item),
         cmocka_unit_test(a_dose_is_described_with_what_it_lacks_and_its_levels),
         cmocka_unit_test(a_highlighted_part_is_described_with_its_limits_its_univels_and_its_weights),
         cmocka_unit_test(a_comparison_is_described_with_its_colours_in_place_of_the_levels),

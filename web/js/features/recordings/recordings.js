@@ -53,7 +53,18 @@ async function remove(room, api, ui, list, id) {
   void list.ask();
 }
 
-const row = ({ id, state, started_ms, length_ms, by_name }, { room, api, ui, list }) => {
+async function film(world, recording) {
+  try {
+    const { openMeetingFilm } = await import('../report/later_snapshots.js');
+    await openMeetingFilm(world, recording);
+  } catch {
+    world.ui.notify('err', say.filmNotLoaded);
+  }
+}
+
+const row = (recording, { world, list }) => {
+  const { room, api, ui } = world;
+  const { id, state, started_ms, length_ms, by_name } = recording;
   const time = dayTime(started_ms);
   const facts = [timeOf(length_ms), say.by({ name: by_name }), state === 'cut' ? say.cut : state === 'full' ? say.full : ''];
   const drop = () => remove(room, api, ui, list, id);
@@ -61,6 +72,7 @@ const row = ({ id, state, started_ms, length_ms, by_name }, { room, api, ui, lis
     <span class="dim">${facts.filter(Boolean).join(' · ')}</span></span>
     <span class="roster-buttons">
     <button aria-label=${say.playOf({ time })} title=${say.playIs} @click=${() => play(room, api, ui, id)}>${say.play}</button>
+    ${room.control.mayExport && room.control.may('scene') ? html`<button aria-label=${say.filmOf({ time })} title=${say.filmIs} @click=${() => film(world, recording)}>${say.film}</button>` : nothing}
     ${room.control.may('control') ? html`<button aria-label=${say.deleteOf({ time })} @click=${drop}>${say.delete}</button>` : nothing}</span></li>`;
 };
 
@@ -102,8 +114,9 @@ const people = ({ recording: { members } }, avatar) =>
   )}</ul>`
     : nothing;
 
-/** @param {object} world {room, ui, api} @param {(member: object) => object} avatar of a member, as in the list above */
-export function recordings({ room, ui, api }, avatar) {
+/** @param {object} world of the page @param {(member: object) => object} avatar of a member, as in the list above */
+export function recordings(world, avatar) {
+  const { room, ui, api } = world;
   const { recording, following } = room;
   if (recording.replay.value) return html`${transport(room)}${people(room, avatar)}`;
   if (!api) return nothing;
@@ -119,5 +132,5 @@ export function recordings({ room, ui, api }, avatar) {
         ? html`<button title=${say.recordIs} @click=${() => recording.say('recording.start')}>${say.record}</button>`
         : nothing
   }</div>
-    ${rows.length ? html`<h3 class="dim">${say.recordings}</h3><ul aria-label=${say.recordings}>${rows.map((one) => row(one, { room, api, ui, list }))}</ul>` : nothing}`;
+    ${rows.length ? html`<h3 class="dim">${say.recordings}</h3><ul aria-label=${say.recordings}>${rows.map((one) => row(one, { world, list }))}</ul>` : nothing}`;
 }

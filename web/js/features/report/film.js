@@ -1,7 +1,9 @@
-// A film of a turn about the scene: a small form, the progress of its job, and the film to save. The server makes it while the page does other things.
+// A film of a turn about the scene, or of a recorded meeting: a small form, the progress of its job, and the film to save. The server makes it while the
+// page does other things.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
 import { ofMember } from '../../net/api.js';
+import { dayTime } from '../../parts/format.js';
 import { checkbox, numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { shownPatient } from '../../room/identity.js';
@@ -12,11 +14,22 @@ const sizes = { 640: [640, 480], 1280: [1280, 720], 1920: [1920, 1080] };
 const turns = { 360: say.filmWhole, 180: say.filmHalf, 90: say.filmQuarter };
 const most = { seconds: 60 };
 const first = { degrees: 360, isReversed: false, seconds: 12, fps: 24, width: 640, isNamed: false };
-const states = new WeakMap(); // of each room: {order, job, why}
+const firstOfMeeting = { isWhole: false, fps: 5, width: 1280, isNamed: false };
+const pauseS = 2;
+const states = new WeakMap(); // of each room, and of each of its recordings: {order, job, why, path, file}
 
-function stateOf(room) {
-  if (!states.has(room)) states.set(room, { order: signal(first), job: signal(null), why: signal('') });
+const stateFor = (path, file, order) => ({ path, file, order: signal(order), job: signal(null), why: signal('') });
+
+function statesOf(room) {
+  if (!states.has(room)) states.set(room, new Map([['', stateFor('video', 'turn', first)]]));
   return states.get(room);
+}
+
+function stateOf(room, recording) {
+  const all = statesOf(room);
+  const id = recording?.id ?? '';
+  if (!all.has(id)) all.set(id, stateFor(`recordings/${id}/video`, 'meeting', firstOfMeeting));
+  return all.get(id);
 }
 
 /** The view that turns: the active pane where it is one into space, else the first such pane that is open. */
@@ -52,26 +65,24 @@ async function follow({ api, clock, ui }, state, id) {
 
 const isNameable = ({ room }) => room.seesIdentity.value && shownPatient(room.plan.value, room.scene.value);
 
-async function make(world, state) {
-  const { room, api } = world;
-  const { degrees, isReversed, seconds, fps, width, isNamed } = state.order.value;
+function turnOf(world, { degrees, isReversed, seconds, fps, width }) {
   const document = turningView(world)?.document.value;
+  return { view: { ...document, size_px: sizes[width] }, degrees: isReversed ? -degrees : degrees, seconds, fps };
+}
+
+const meetingOf = (_world, { isWhole, fps, width }) => ({ pauses_s: isWhole ? 0 : pauseS, fps, size_px: sizes[width] });
+
+async function make(world, state, bodyOf) {
+  const { room, api } = world;
+  const { isNamed } = state.order.value;
+  const body = { ...bodyOf(world, state.order.value), identity: Boolean(isNamed && isNameable(world)) };
   const ordered = { state: 'queued', percent: 0 }; // until the server has given it an id
   const isOurs = () => state.job.value === ordered;
   state.why.value = '';
   state.order.value = { ...state.order.value, isNamed: false }; // asked anew for each film
   state.job.value = ordered;
   try {
-    const job = await api.call('POST', `rooms/${room.id}/video`, {
-      more: ofMember(room.identity),
-      body: {
-        view: { ...document, size_px: sizes[width] },
-        degrees: isReversed ? -degrees : degrees,
-        seconds,
-        fps,
-        identity: Boolean(isNamed && isNameable(world)),
-      },
-    });
+    const job = await api.call('POST', `rooms/${room.id}/${state.path}`, { more: ofMember(room.identity), body });
     if (!isOurs()) return void (await api.cancelJob(job.id)); // cancelled meanwhile
     state.job.value = job;
     await follow(world, state, job.id);
@@ -96,7 +107,7 @@ async function cancel({ api }, state) {
 }
 
 /** The file is named as the server names it: by the time of the order, in UTC. */
-const fileName = (plan, job) => `${plan}-turn-${new Date(job.created_ms).toISOString().replace(/[-:]|\.\d+/g, '')}.webm`;
+const fileName = (job, what) => `${job.plan}-${what}-${new Date(job.created_ms).toISOString().replace(/[-:]|\.\d+/g, '')}.webm`;
 
 async function save({ api, room }, state) {
   const job = state.job.value;
@@ -106,7 +117,7 @@ async function save({ api, room }, state) {
       import('../../room/exports.js'),
       api.call('GET', `jobs/${job.id}/video`, { isPicture: true, more: ofMember(room.identity) }),
     ]);
-    saveBlob(fileName(job.plan, job), film);
+    saveBlob(fileName(job, state.file), film);
   } catch (problem) {
     state.why.value = goneWords(problem);
   }
@@ -118,24 +129,44 @@ const kept = (run) => (event) => {
   run();
 };
 
+const sizesToChoose = Object.entries(sizes).map(([id, [w, h]]) => [id, `${w} × ${h}`]);
+const rates = (all) => all.map((n) => [String(n), String(n)]);
+
+/** Fields that both forms end with. */
+function common(world, order, set, fps) {
+  return html`<span class="lbl">${say.filmRate}</span>${segment(say.filmRate, rates(fps), String(order.fps), false, (id) => set({ fps: Number(id) }))}
+      <span class="lbl">${say.filmSize}</span>${segment(say.filmSize, sizesToChoose, String(order.width), false, (id) => set({ width: Number(id) }))}
+      ${isNameable(world) ? html`<span></span>${checkbox(say.withIdentity, order.isNamed, false, (isNamed) => set({ isNamed }))}` : nothing}`;
+}
+
+const makeButton = (isReady, run) =>
+  html`<div class="buttons"><button class="primary" ?disabled=${!isReady} @click=${kept(run)}>${icon('reset')}<span>${say.filmMake}</span></button></div>`;
+
+const setterOf = (state) => (change) => {
+  state.order.value = { ...state.order.value, ...change };
+};
+
 function form(world, state) {
   const order = state.order.value;
-  const set = (change) => {
-    state.order.value = { ...state.order.value, ...change };
-  };
-  const options = (words) => Object.entries(words).map(([id, word]) => [id, word]);
-  const asRates = [12, 24, 30].map((n) => [String(n), String(n)]);
-  const asSizes = Object.entries(sizes).map(([id, [w, h]]) => [id, `${w} × ${h}`]);
+  const set = setterOf(state);
   const hasView = Boolean(turningView(world));
   return html`<div class="film-fields">
-      <span class="lbl">${say.filmTurn}</span>${segment(say.filmTurn, options(turns).reverse(), String(order.degrees), false, (id) => set({ degrees: Number(id) }))}
+      <span class="lbl">${say.filmTurn}</span>${segment(say.filmTurn, Object.entries(turns).reverse(), String(order.degrees), false, (id) => set({ degrees: Number(id) }))}
       <span></span>${checkbox(say.filmReversed, order.isReversed, false, (isReversed) => set({ isReversed }))}
       <span class="lbl">${say.filmLength}</span>${numberField(say.filmLength, order.seconds, 's', false, (seconds) => set({ seconds: Math.min(most.seconds, Math.max(1, seconds)) }))}
-      <span class="lbl">${say.filmRate}</span>${segment(say.filmRate, asRates, String(order.fps), false, (id) => set({ fps: Number(id) }))}
-      <span class="lbl">${say.filmSize}</span>${segment(say.filmSize, asSizes, String(order.width), false, (id) => set({ width: Number(id) }))}
-      ${isNameable(world) ? html`<span></span>${checkbox(say.withIdentity, order.isNamed, false, (isNamed) => set({ isNamed }))}` : nothing}</div>
+      ${common(world, order, set, [12, 24, 30])}</div>
     <p class="note">${hasView ? say.filmAbout({ n: Math.round(order.seconds * order.fps) }) : say.filmNoView}</p>
-    <div class="buttons"><button class="primary" ?disabled=${!hasView} @click=${kept(() => make(world, state))}>${icon('reset')}<span>${say.filmMake}</span></button></div>`;
+    ${makeButton(hasView, () => make(world, state, turnOf))}`;
+}
+
+function meetingForm(world, state) {
+  const order = state.order.value;
+  const set = setterOf(state);
+  return html`<div class="film-fields">
+      <span></span>${checkbox(say.filmShortened({ s: pauseS }), !order.isWhole, false, (isShort) => set({ isWhole: !isShort }))}
+      ${common(world, order, set, [2, 5, 10])}</div>
+    <p class="note">${say.filmOfMeetingAbout}</p>
+    ${makeButton(true, () => make(world, state, meetingOf))}`;
 }
 
 function running(world, state) {
@@ -157,16 +188,21 @@ function done(world, state) {
       <button @click=${kept(another)}>${say.filmAnother}</button></div>`;
 }
 
-export function filmDialog(world) {
-  const { room, ui } = world;
+function dialog(world, state, title, ordered) {
+  const { ui } = world;
   if (ui.popover.value !== 'film') return nothing;
-  const state = stateOf(room);
   const job = state.job.value;
   const close = () => {
     ui.popover.value = '';
   };
   return html`<section class="card other-plan film" role="dialog" tabindex="-1" aria-labelledby="film-head">
-    <div class="film-head"><h2 id="film-head">${say.film}</h2><button class="icon-button" aria-label=${say.filmClose} @click=${close}>${icon('close')}</button></div>
+    <div class="film-head"><h2 id="film-head">${title}</h2><button class="icon-button" aria-label=${say.filmClose} @click=${close}>${icon('close')}</button></div>
     ${state.why.value ? html`<p class="warn" role="alert">${state.why.value}</p>` : nothing}
-    ${job ? (job.state === 'done' ? done(world, state) : running(world, state)) : form(world, state)}</section>`;
+    ${job ? (job.state === 'done' ? done(world, state) : running(world, state)) : ordered(world, state)}</section>`;
 }
+
+export const filmDialog = (world) => dialog(world, stateOf(world.room), say.film, form);
+
+/** @param {{id: string, started_ms: number}} recording a row of GET recordings */
+export const meetingDialog = (recording) => (world) =>
+  dialog(world, stateOf(world.room, recording), say.filmOfMeeting({ time: dayTime(recording.started_ms) }), meetingForm);

@@ -52,14 +52,18 @@ async function openPrintout({ ui, printoutDialog }) {
 }
 
 /** Likewise. */
-async function openFilm({ ui, filmDialog }) {
+async function openFilm({ ui, filmDialog }, recording) {
   try {
-    [{ filmDialog: filmDialog.value }] = await Promise.all([import('./film.js'), styled('js/features/report/film.css')]);
+    const [film] = await Promise.all([import('./film.js'), styled('js/features/report/film.css')]);
+    filmDialog.value = recording ? film.meetingDialog(recording) : film.filmDialog;
     ui.popover.value = 'film';
   } catch {
     ui.notify('err', say.filmNotLoaded, 'snapshot');
   }
 }
+
+/** Opens the dialog for a row of the list of recordings. */
+export const openMeetingFilm = (world, recording) => openFilm(world, recording);
 
 /** The menu while it is open. */
 export function menu(world) {
@@ -75,7 +79,7 @@ export function menu(world) {
   return html`<div class="popover snapshots"><div class="menu" role="menu" aria-label=${say.snapshot} @keydown=${menuKeys}>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>${say.save}</span></button>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>${say.add}</span></button>
-      <button role="menuitem" @click=${act(openFilm)}>${icon('reset')}<span>${say.filmOf}</span></button>
+      <button role="menuitem" @click=${act((opened) => openFilm(opened))}>${icon('reset')}<span>${say.filmOf}</span></button>
       <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>${say.report}</span><span class="tag">${n}</span></button></div>
       ${room.seesIdentity.value && shownPatient(room.plan.value, room.scene.value) ? html`<label class="snapshot-named"><input type="checkbox"> ${say.withIdentity}</label>` : nothing}
       <p class="note">${say.about}</p></div>`;

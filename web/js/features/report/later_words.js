@@ -8,6 +8,10 @@ export const say = sentences('report.later', {
   report: 'Report to print',
   film: 'Film of a turn',
   filmOf: 'Film of a turn …',
+  filmOfMeeting: 'Film of the meeting of {time}',
+  filmShortened: 'shorten pauses to {s} s; each picture then says so',
+  filmOfMeetingAbout:
+    'The view that was worked in, as it was, with the recorded time and who presented. Pointers and notes are not in it. At most 3600 pictures, as WebM.',
   filmTurn: 'Turn',
   filmWhole: 'Whole',
   filmHalf: 'Half',
