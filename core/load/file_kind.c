@@ -34,8 +34,6 @@ static const char *by_ending(const char *base)
         { ".vtu", "a mesh of VTK" },
         { ".vtr", "a grid of VTK" },
         { ".mat", "data of MATLAB" },
-        { ".mha", "an image of MetaImage" },
-        { ".mhd", "an image of MetaImage" },
         { ".mgz", "an image of FreeSurfer" },
         { ".mgh", "an image of FreeSurfer" },
         { ".mnc", "an image of MINC" },

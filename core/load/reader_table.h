@@ -7,6 +7,7 @@
 #define PART_READERS(X) \
     X(part_nifti) \
     X(part_nrrd) \
+    X(part_metaimage)     /* .mha, .mhd */ \
     X(part_uvh)           /* SERA's univels */ \
     X(part_qsh)           /* SERA's image: .qim with its .qhd */ \
     X(part_sera_rst)      /* SERA's dose on a mesh */ \

@@ -65,6 +65,8 @@
     X("image.by-content", "A file is named like labels or a dose, but its values are those of an image.", \
       "Rename the file, or say in a plan.json what it is.") \
     X("image.constant", "Every voxel of an image has the same value.", "Check the file.") \
+    X("image.place-assumed", "The header of an image does not say where it lies.", \
+      "Check that it fits the other parts.") \
     X("image.bytes-behind", "A file holds more bytes than its header speaks of.", \
       "Check that the header belongs to these voxels.") \
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.") \
