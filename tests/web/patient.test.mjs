@@ -128,6 +128,24 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     }
   });
 
+  it('the one person at the server has it shown at once in the next room, and masks it there', async () => {
+    const context = page.context();
+    if ((await page.locator('.patient-card').count()) === 0) await page.locator('.patient-button').click();
+    const box = page.getByRole('checkbox', { name: 'Show at once on this computer' });
+    await box.check();
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'patient-at-once');
+    await shows(page.locator('.patient-button'), 'Q. Z. …419'); // in the next room
+    const next = await context.newPage();
+    await next.goto(`${world.daemon.url}/rooms/${await world.newRoom('case-1')}`);
+    await shows(next.locator('.patient-button'), 'ZWEIFEL, Quirin');
+    await next.locator('.patient-button').click();
+    await next.getByRole('button', { name: 'Mask it again' }).click();
+    await shows(next.locator('.patient-button'), 'Q. Z. …419');
+    await next.close();
+    await box.uncheck();
+  });
+
   it('a wall of the room names the patient when that is asked for it, and is masked again by the same button', async () => {
     const room = page.url().split('/').pop();
     const { token: link } = (await call(`${world.daemon.url}/api/v1/rooms/${room}/links`, 'POST', { role: 'wall', expires_s: 600 })).json;

@@ -58,7 +58,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     const before = await world.scene(room);
     const matrix = (await header(page, 1)).clip_from_lps_mm;
     const { name, bytes } = await saved(page);
-    assert.equal(name, 'phantom-3d.png');
+    assert.match(name, /^phantom-3d-\d{8}T\d{6}Z\.png$/);
     assert.ok(bytes.readUInt32BE(16) >= 1200, 'wide enough for paper');
     const { scene_revision: revision } = await header(page, 1);
     const plain = await drawn(room, { size_px: [200, 150] });
@@ -99,7 +99,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await full(page, 2);
     await choose(page, 2);
     const { name, bytes } = await saved(page);
-    assert.equal(name, 'other-axial.png');
+    assert.match(name, /^other-axial-\d{8}T\d{6}Z\.png$/);
     const scene = await world.scene(other);
 
     await page.goto(`${world.daemon.url}/rooms/${await world.newRoom()}`);

@@ -56,10 +56,14 @@ export function printable(world, what, name) {
     });
 }
 
+/** A time in the name of a file: 20261128T031400Z. */
+const fileTime = (ms) => new Date(ms).toISOString().replace(/[-:]|\.\d+/g, '');
+
 /** The view as a picture with letters, scale and caption; the server records it. isNamed: with the patient's name, of who may read it. */
 export async function savePicture({ api, room, ui }, view, document, isNamed) {
   try {
-    saveBlob(`${room.planId.value}-${view.kind}.png`, await api.snapshot(room, document, isNamed));
+    const name = `${room.planId.value}-${view.kind}-${fileTime(Date.now())}.png`; // when it was asked for
+    saveBlob(name, await api.snapshot(room, document, isNamed));
   } catch (problem) {
     ui.notify('err', say.noSnapshot({ reason: problem.message }), 'snapshot');
   }

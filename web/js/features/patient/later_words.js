@@ -55,6 +55,7 @@ export const say = sentences('patient.later', {
   mask: 'Mask it again',
   masked: 'Masked, as for everybody.',
   show: 'Show to me',
+  atOnce: 'Show at once on this computer',
   onWall: 'On the wall …',
   walls: 'Walls of this room',
   noWall: 'No wall is in this room: People, Make a link, as wall.',

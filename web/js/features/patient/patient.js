@@ -16,6 +16,11 @@ const pencil = ({ statement: said }) =>
     ? html` <span class="dim" title=${say.statedBy({ by: said.by })}>${icon('pencil', 12)}</span>`
     : nothing;
 
+/** True where nobody signs in, and the one person at the server has it so: it is shown as soon as the room is there. */
+function isAtOnce({ room, session, storage }) {
+  return room.seesIdentity.value && !session.value && storage?.getItem('identity.at-once') === 'yes';
+}
+
 /** The patient: "A. V. …417"; PHANTOM; identity unknown. */
 export function patientButton(world) {
   const { room, ui } = world;
@@ -27,6 +32,7 @@ export function patientButton(world) {
   // without the right nothing opens
   if (!room.seesIdentity.value)
     return html`<span class="patient masked"><b class="patient-name">${patient.masked}${pencil(plan)}</b></span><i class="rule"></i>`;
+  if (isAtOnce(world)) known(card)?.showAtOnce(world);
   const shown = card.loaded.value?.shownIdentity(world);
   const idBorn = shown ? html`<span class="dim">${say.idBorn({ id: shown.id, date: dateWords(shown.birth) })}</span>` : nothing;
   return html`<span class="patient masked anchor"><button class="patient-button" aria-expanded=${ui.popover.value === 'patient'}

@@ -3,6 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { effect, signal } from '../../../lib/signals-core.js';
 import { ofMember } from '../../net/api.js';
 import { identityOf, shownPatient } from '../../room/identity.js';
+import { checkbox } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
 
@@ -89,6 +90,25 @@ async function show(world) {
   keepAWhile(room);
 }
 
+const begun = new WeakSet(); // rooms in which it was shown at once
+
+/** Shows it once in a room, without being asked there: after a while it is masked again, and stays so. */
+export function showAtOnce(world) {
+  if (begun.has(world.room)) return;
+  begun.add(world.room);
+  queueMicrotask(() => void show(world)); // not while it is drawn
+}
+
+/** Where nobody signs in, the one person at the server may have it so. */
+function atOnce({ room, storage, session }) {
+  if (session.value || !storage) return nothing;
+  const set = (isOn) => {
+    begun.add(room);
+    storage.setItem('identity.at-once', isOn ? 'yes' : 'no');
+  };
+  return checkbox(say.atOnce, storage.getItem('identity.at-once') === 'yes', false, set);
+}
+
 // ---- several patients ------------------------------------------------------------------------------------------------------
 
 /** Shows the identities of all patients of the folder, or hides them again. */
@@ -165,6 +185,7 @@ export function patientCard(world) {
           <button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>${say.show}</span></button>${onWall()}</div>`
     }
     ${isOnWalls.value ? walls(world) : nothing}
+    ${atOnce(world)}
     ${error ? html`<p class="note err" role="alert">${error}</p>` : nothing}
     <p class="note">${say.alone({ n: shownMinutes })}</p></div>`;
 
