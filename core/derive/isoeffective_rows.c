@@ -119,8 +119,11 @@ static const float *voxels_of(const struct isoeffective_rows *rows, size_t row, 
 static bool sample(const struct isoeffective_rows *rows, size_t row, struct vec3 point_lps_mm,
                    double values[N_COMPONENTS])
 {
+    struct volume_place place;
+    if (!volume_place_find(rows->grid, point_lps_mm, &place))
+        return false;
     for (int c = 0; c < N_COMPONENTS; c++)
-        if (rows->components[row][c] && !volume_sample(rows->components[row][c]->rows[0], point_lps_mm, &values[c]))
+        if (rows->components[row][c] && !volume_place_value(rows->components[row][c]->rows[0], &place, &values[c]))
             return false;
     return true;
 }

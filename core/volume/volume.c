@@ -278,23 +278,29 @@ bool volume_voxel_at(const struct volume *volume, struct vec3 point_lps_mm, uint
 /* Nearer to a voxel's centre than rounding can tell: there a neighbour without a value does not count. In voxels. */
 #define NEAR_CENTRE 1e-7
 
-bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double *value)
+bool volume_place_find(const struct grid *grid, struct vec3 point_lps_mm, struct volume_place *place)
 {
-    uint32_t nearest[3], low[3], high[3];
-    double weight[3];
-    if (!volume_voxel_at(volume, point_lps_mm, nearest))
-        return false;
-    struct vec3 p = affine_point(&volume->grid.ijk_from_lps_mm, point_lps_mm);
+    const struct vec3 p = affine_point(&grid->ijk_from_lps_mm, point_lps_mm);
     const double at[3] = { p.x, p.y, p.z };
     for (int axis = 0; axis < 3; axis++) {
-        double last = volume->grid.size[axis] - 1.0;
+        const double nearest = floor(at[axis] + 0.5);
+        if (!(nearest >= 0 && nearest < grid->size[axis]))
+            return false;
+        double last = grid->size[axis] - 1.0;
         double inside = fmin(fmax(at[axis], 0), last), nearest_centre = floor(inside + 0.5);
         if (fabs(inside - nearest_centre) < NEAR_CENTRE)
             inside = nearest_centre;
-        low[axis] = (uint32_t)inside;
-        high[axis] = low[axis] < (uint32_t)last ? low[axis] + 1 : low[axis];
-        weight[axis] = inside - low[axis];
+        place->low[axis] = (uint32_t)inside;
+        place->high[axis] = place->low[axis] < (uint32_t)last ? place->low[axis] + 1 : place->low[axis];
+        place->weight[axis] = inside - place->low[axis];
     }
+    return true;
+}
+
+bool volume_place_value(const struct volume *volume, const struct volume_place *place, double *value)
+{
+    const uint32_t *low = place->low, *high = place->high;
+    const double *weight = place->weight;
     double sum = 0;
     for (int corner = 0; corner < 8; corner++) {
         double share = (corner & 1 ? weight[0] : 1 - weight[0]) * (corner & 2 ? weight[1] : 1 - weight[1]) *
@@ -308,4 +314,10 @@ bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double
         return false;
     *value = sum * volume->slope + volume->offset;
     return true;
+}
+
+bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double *value)
+{
+    struct volume_place place;
+    return volume_place_find(&volume->grid, point_lps_mm, &place) && volume_place_value(volume, &place, value);
 }

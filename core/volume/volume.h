@@ -74,3 +74,10 @@ bool volume_voxel_at(const struct volume *volume, struct vec3 point_lps_mm, uint
 /* Trilinear value between voxel centres, clamped to the outermost centres. Returns false outside the outer faces, or if
  * a value is not finite that counts: at a voxel's centre only its own does. */
 bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double *value);
+/* volume_sample in two steps, for several volumes on one grid: where the point lies, and the value there. */
+struct volume_place {
+    uint32_t low[3], high[3]; /* voxels on either side, by axis */
+    double weight[3];         /* of those at high */
+};
+bool volume_place_find(const struct grid *grid, struct vec3 point_lps_mm, struct volume_place *place);
+bool volume_place_value(const struct volume *volume, const struct volume_place *place, double *value);

@@ -95,11 +95,13 @@ struct counted {
     size_t region;
     struct dose_choice choice;  /* per one unit of output */
     struct dose_growth *growth; /* of an isoeffective dose, which is not in proportion to the output; else NULL */
+    bool is_borrowed;           /* growth */
 };
 
 static void counted_finish(struct counted *counted)
 {
-    dose_growth_destroy(counted->growth);
+    if (!counted->is_borrowed)
+        dose_growth_destroy(counted->growth);
 }
 
 /* The figure of one limit, with the histogram that it is of. */
@@ -146,7 +148,7 @@ static bool find_counted(const struct irradiation *all, const struct region *reg
         return false;
     if (quantity != SCENE_DOSE_QUANTITY_ISOEFFECTIVE)
         return true;
-    if (has_minutes(all, why))
+    if (has_minutes(all, why) && !counted->growth)
         counted->growth = dose_growth_create(snapshot->derived, &counted->choice, counted->region, population, why);
     return counted->growth != NULL;
 }
@@ -191,10 +193,26 @@ static bool find_reach(struct limit *limit)
                                                         &limit->reach, &limit->why);
 }
 
-static void find_limit(const struct irradiation *all, const struct scene_constraint *constraint, struct limit *limit)
+/* The growth of an earlier limit of this region and tissue; NULL: there is none. */
+static struct dose_growth *growth_among(const struct limit *limits, size_t n, const struct scene_constraint *constraint)
 {
+    for (size_t i = 0; i < n; i++)
+        if (limits[i].counted.growth && constraint->quantity == SCENE_DOSE_QUANTITY_ISOEFFECTIVE &&
+            strcmp(limits[i].constraint->region, constraint->region) == 0 &&
+            strcmp(limits[i].constraint->tissue, constraint->tissue) == 0)
+            return limits[i].counted.growth;
+    return NULL;
+}
+
+/* Finds limits[n], after those before it. */
+static void find_limit(const struct irradiation *all, const struct scene_constraint *constraint, struct limit *limits,
+                       size_t n)
+{
+    struct limit *limit = &limits[n];
     *limit = (struct limit){ .constraint = constraint,
                              .region = region_find(&all->snapshot->plan->regions, constraint->region) };
+    limit->counted.growth = growth_among(limits, n, constraint);
+    limit->counted.is_borrowed = limit->counted.growth != NULL;
     bool has_reach =
         (limit->region || error_set(&limit->why, ERROR_NOT_FOUND, "no region is chosen")) &&
         dvh_metric_parse(constraint->metric, &limit->metric, &limit->why) &&
@@ -311,12 +329,18 @@ static void add_targets(cJSON *json, const struct irradiation *all, enum scene_d
         if (choice->n_parts > 0)
             dose_shown_unit(&all->snapshot->plan->doses[choice->unit_of], choice->shown, choice->quantity, unit);
         cJSON_AddStringToObject(row, "unit", unit);
+        struct dvh then = { 0 }; /* at the output, of a dose that is not in proportion to it */
+        const bool is_grown =
+            is_known && counted.growth && dvh.n > 0 && isfinite(output) && histogram_at(&counted, output, &then, NULL);
         for (size_t f = 0; f < sizeof figures / sizeof *figures; f++) {
             double least = NAN, most = NAN;
-            if (is_known)
+            if (is_grown)
+                dvh_metric_range(&then, &figures[f].metric, &least, &most);
+            else if (is_known && !counted.growth)
                 figure_at(&counted, &dvh, &figures[f].metric, output, &least, &most);
             add_range(row, figures[f].names, least, most);
         }
+        dvh_finish(&then);
         reason_add_json(row, "reason", why.code ? why.text : NULL);
         cJSON_AddItemToArray(list, row);
         dvh_finish(&dvh);
@@ -332,7 +356,7 @@ static bool add_limits(cJSON *json, const struct irradiation *all, struct error 
     if (!limits)
         return false;
     for (size_t i = 0; i < scene->n_constraints; i++)
-        find_limit(all, &scene->constraints[i].value, &limits[i]);
+        find_limit(all, &scene->constraints[i].value, limits, i);
     int first = first_limit(limits, scene->n_constraints, &is_certain);
     double output = first >= 0 ? limits[first].reach.least : NAN;
     json_add_text(json, "first", first >= 0 ? scene->constraints[first].id : NULL);
@@ -341,8 +365,9 @@ static bool add_limits(cJSON *json, const struct irradiation *all, struct error 
     json_add_finite(json, "minutes", output * all->minutes);
     add_fields(json, all, output);
     cJSON *list = cJSON_AddArrayToObject(json, "limits");
-    for (size_t i = 0; i < scene->n_constraints; i++) {
+    for (size_t i = 0; i < scene->n_constraints; i++)
         add_limit(list, all, scene->constraints[i].id, &limits[i], (int)i == first, output);
+    for (size_t i = 0; i < scene->n_constraints; i++) {
         dvh_finish(&limits[i].dvh);
         counted_finish(&limits[i].counted);
     }
