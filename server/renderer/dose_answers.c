@@ -138,10 +138,13 @@ static size_t n_beams_summed(const struct snapshot *snapshot)
 
 static const char *shown_name(const struct snapshot *snapshot, char name[DOSE_STATED_NAME_SIZE])
 {
-    size_t n = n_beams_summed(snapshot);
-    if (n == 0)
+    size_t n = n_beams_summed(snapshot), n_parts = snapshot->has_dose_choice ? snapshot->dose_choice.n_parts : 1;
+    if (n == 0 && n_parts < 2)
         return snapshot->plan->doses[snapshot->dose].name;
-    snprintf(name, DOSE_STATED_NAME_SIZE, "Sum of the doses of all %zu beams", n);
+    if (n > 0)
+        snprintf(name, DOSE_STATED_NAME_SIZE, "Sum of the doses of all %zu beams", n);
+    else
+        snprintf(name, DOSE_STATED_NAME_SIZE, "Sum of %zu doses", n_parts);
     return name;
 }
 

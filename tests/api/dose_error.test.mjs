@@ -66,8 +66,9 @@ test('beams are summed at a point, each with its factor, and the parts are said'
     [-31, 15, -6],
   ];
   const single = {};
+  const none = Object.fromEntries(ids.map((id) => [id, null])); // a new room adds the doses of all beams
   for (const id of ids) {
-    const room = await makeRoom(plan, { dose: { id, quantity: 'total' } });
+    const room = await makeRoom(plan, { dose: { id, quantity: 'total', sum: none } });
     single[id] = await Promise.all(at.map(async (point) => (await probeOf(plan, room, point)).value));
   }
   const sum = { [ids[1]]: { factor: 2 }, [ids[2]]: { factor: 0.5 } };
@@ -75,6 +76,7 @@ test('beams are summed at a point, each with its factor, and the parts are said'
   for (const [i, point] of at.entries()) {
     const probe = await probeOf(plan, room, point);
     near(probe.value, single[ids[0]][i] + 2 * single[ids[1]][i] + 0.5 * single[ids[2]][i], `sum at ${point}`);
+    assert.equal(probe.name, 'Sum of 3 doses');
     assert.deepEqual(
       probe.parts.map(({ id, factor, used }) => ({ id, factor, used })),
       [
