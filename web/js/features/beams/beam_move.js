@@ -19,8 +19,6 @@ const inPlaneMm = 2; // farther from the slice a point is drawn faint
 const takePx = 22; // a press this near to a point takes that one
 const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-addTool('beam', (pane) => new PaneMove(pane));
-
 /** Turns the tool on, in Selection with its beam. */
 export function startMoving({ ui }, part = movedPoint.peek()) {
   movedPoint.value = part;
@@ -154,3 +152,6 @@ class PaneMove {
       )}<circle class="dot" r="1.8" /></svg></i>`;
   }
 }
+
+// Panes in which the tool is on already make theirs at once, so the class comes before.
+addTool('beam', (pane) => new PaneMove(pane));
