@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/annotate/words.h"
+#include "core/plan/fit.h"
 #include "core/region/body.h"
 #include "core/render/visible/draw_compare.h"
 #include "core/render/visible/isoline_labels.h"
@@ -250,6 +251,16 @@ static void add_coverage(struct annotations *annotations, const struct snapshot 
                    basis ? ", " : "", basis ? basis : "");
 }
 
+/* Doses of several beams together are per none of them. */
+static const char *per_of(const struct snapshot *snapshot, const struct dose_field *field)
+{
+    char word[FIT_PER_SIZE];
+    const struct dose_choice *choice = &snapshot->dose_choice;
+    const bool is_of_beams =
+        choice->n_parts > 1 && strcmp(fit_per(&snapshot->plan->doses[choice->parts[0].dose], word), "beam") == 0;
+    return is_of_beams ? "" : field->per;
+}
+
 void dose_describe(struct annotations *annotations, const struct snapshot *snapshot)
 {
     struct dose_scale scale;
@@ -262,7 +273,7 @@ void dose_describe(struct annotations *annotations, const struct snapshot *snaps
         dose_scale_finish(&scale);
         return;
     }
-    const char *per = scale.field->per, *unit = scale.field->unit;
+    const char *per = per_of(snapshot, scale.field), *unit = scale.field->unit;
     add_parts(annotations, snapshot);
     (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "%s%s%s%s%s",
                    quantity_words(snapshot->scene.dose.quantity), unit[0] ? " in " : ", unit not known", unit,

@@ -17,6 +17,7 @@
 #include "server/cli/exit_code.h"
 #include "server/cli/open_plan.h"
 #include "server/cli/render_arguments.h"
+#include "server/cli/render_words.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"
 #include "server/wire/plan_document.h"
@@ -106,6 +107,7 @@ static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const str
     if (!patch)
         return NULL;
     cJSON *scene = scene_document_patch(document, defaults, defaults, patch, &problem);
+    const bool says_sum = render_field(render_field(patch, "dose"), "sum") != NULL;
     cJSON_Delete(patch);
     if (!scene) {
         refuse_problem(arguments->scene ? arguments->scene : "scene", &problem, err);
@@ -121,7 +123,8 @@ static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const str
     if (!shown)
         return NULL;
     cJSON *dosed = NULL, *whole = NULL;
-    patch = render_dose_patch(&arguments->dose, shown, err);
+    const cJSON *sum = says_sum ? NULL : render_field(render_field(shown, "dose"), "sum");
+    patch = render_dose_patch(&arguments->dose, shown, sum, err);
     if (patch && !(dosed = scene_document_patch(document, defaults, shown, patch, &problem)))
         refuse_problem("an option about dose", &problem, err);
     cJSON_Delete(patch);

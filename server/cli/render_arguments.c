@@ -40,7 +40,7 @@ static void print_help(void)
         "  --ambient N       light from all sides in 3-D, 0 to 1\n"
         "  --background C    the ground of 3-D: white, black, or red, green and blue as #rrggbb\n");
     printf(
-        "  --dose ID         the dose that is shown\n"
+        "  --dose ID         the dose that is shown, alone unless --scene adds others\n"
         "  --accept A=B      uses two parts though they do not fit, such as dose:plan=image:ct; the caption says so; given\n"
         "                    again: one more pair\n"
         "  --quantity WORD   weighted, total, boron, nitrogen, fast, gamma, isoeffective and others of the scene\n"
@@ -140,7 +140,7 @@ static bool check_words(const struct render_arguments *arguments, struct error *
 {
     cJSON *nothing = cJSON_CreateObject(), *view = cJSON_CreateObject();
     cJSON *shown = render_show_patch(&arguments->show, nothing, err);
-    cJSON *dosed = shown ? render_dose_patch(&arguments->dose, nothing, err) : NULL;
+    cJSON *dosed = shown ? render_dose_patch(&arguments->dose, nothing, NULL, err) : NULL;
     cJSON *beam = dosed ? render_beam_patch(&arguments->beam, NULL, nothing, err) : NULL;
     bool is_good = beam && render_beam_add_view(&arguments->beam, view, err);
     cJSON_Delete(shown);

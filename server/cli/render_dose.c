@@ -128,11 +128,19 @@ static void add_texture(const char *texture, const cJSON *scene, cJSON *patch)
         cJSON_AddStringToObject(render_member(render_member(patch, "regions"), region->string), "texture", texture);
 }
 
-static bool add_plain(const struct render_dose *options, cJSON *dose, struct error *err)
+/* The dose alone: a plan whose beams have doses each begins with their sum. */
+static void add_dose(const char *id, const cJSON *sum, cJSON *dose)
+{
+    const cJSON *part;
+    cJSON_AddStringToObject(dose, "id", id);
+    cJSON_ArrayForEach(part, sum) cJSON_AddNullToObject(render_member(dose, "sum"), part->string);
+}
+
+static bool add_plain(const struct render_dose *options, const cJSON *sum, cJSON *dose, struct error *err)
 {
     double ppm;
     if (options->dose)
-        cJSON_AddStringToObject(dose, "id", options->dose);
+        add_dose(options->dose, sum, dose);
     if (options->quantity)
         cJSON_AddStringToObject(dose, "quantity", options->quantity);
     if (options->tissue)
@@ -151,10 +159,10 @@ static bool add_plain(const struct render_dose *options, cJSON *dose, struct err
     return true;
 }
 
-cJSON *render_dose_patch(const struct render_dose *options, const cJSON *scene, struct error *err)
+cJSON *render_dose_patch(const struct render_dose *options, const cJSON *scene, const cJSON *sum, struct error *err)
 {
     cJSON *patch = cJSON_CreateObject(), *dose = cJSON_CreateObject();
-    bool is_good = add_plain(options, dose, err) &&
+    bool is_good = add_plain(options, sum, dose, err) &&
                    (!options->reference || add_reference(options->reference, dose, err)) &&
                    (!options->wash || add_wash(options->wash, dose, err)) &&
                    (!(options->n_levels > 0 || options->isodoses) || add_levels(options, scene, dose, err));

@@ -21,7 +21,8 @@ struct render_dose {
     bool has_lines;
 };
 
-/* scene: the document of a whole scene, after all other options. The patch is the caller's. NULL with err: ERROR_RANGE
- * an option that cannot be read, with its name first. Words and ids that the scene does not know are left to the check
- * of the patch. */
-NODISCARD cJSON *render_dose_patch(const struct render_dose *dose, const cJSON *scene, struct error *err);
+/* scene: the document of a whole scene, after all other options. sum: its doses that are added to the one shown, unless
+ * another one is chosen; NULL: none. The patch is the caller's. NULL with err: ERROR_RANGE an option that cannot be
+ * read, with its name first. Words and ids that the scene does not know are left to the check of the patch. */
+NODISCARD cJSON *render_dose_patch(const struct render_dose *dose, const cJSON *scene, const cJSON *sum,
+                                   struct error *err);

@@ -1,11 +1,13 @@
 // Parts that do not fit are not used: a part of another patient, frame of reference, treatment plan, unit, ... changes not one pixel and not one
 // number on any path, whatever a scene asks of it. The expected side is the same folder without that part.
 import assert from 'node:assert/strict';
-import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { call, openPlan, startDaemon } from './daemon.mjs';
+import { inflateSync } from 'node:zlib';
+import { bin, call, openPlan, startDaemon } from './daemon.mjs';
 import { putDose, putImages, putPlan, putStructs, putWhole } from './made_dicom.mjs';
 
 const anna = { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' },
@@ -392,4 +394,25 @@ test('where each beam has a dose and nothing has the whole plan, a new room show
   assert.deepEqual(await at(), [Math.round(expected * 1e6) / 1e6, doses[0].name, 'beam 1 of 2']);
   assert.equal((await patch({ dose: { id: doses[2].id } })).status, 200);
   assert.deepEqual(await at(), [Math.round(expected * 1e6) / 1e6, doses[2].name, 'fraction']);
+});
+
+test('the program shows the dose that is asked for alone, and adds others where its scene does', async () => {
+  await openPlan(daemon.url, 'p-beams');
+  const out = join(root, 'out.png');
+  const record = (...options) => {
+    const words = ['render', join(root, 'p-beams'), '-o', out, '--size', '320x200', '--annotations', ...options];
+    const { status, stderr } = spawnSync(join(bin, 'beamroom'), words, { encoding: 'utf8', timeout: 120_000 });
+    assert.equal(status, 0, stderr);
+    const bytes = readFileSync(out);
+    const at = bytes.indexOf('iTXtbeamroom\0');
+    return JSON.parse(inflateSync(bytes.subarray(at + 17, at + 4 + bytes.readUInt32BE(at - 4)))).scene.dose;
+  };
+  const [own, second] = (await call(`${api}/plans/p-beams`)).json.doses.map(({ id }) => id);
+  assert.deepEqual(Object.keys(record().sum), [second]);
+  const scene = join(root, 'scene.json');
+  writeFileSync(scene, JSON.stringify({ dose: { sum: { [second]: { factor: 2 } } } }));
+  const shown = (dose) => [dose.id, dose.sum];
+  assert.deepEqual(shown(record('--dose', own)), [own, {}]);
+  assert.deepEqual(shown(record('--dose', second)), [second, {}]);
+  assert.deepEqual(shown(record('--scene', scene, '--dose', own)), [own, { [second]: { factor: 2 } }]);
 });

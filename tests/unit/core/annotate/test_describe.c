@@ -173,6 +173,46 @@ static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
     plan_and_derived_destroy(plan);
 }
 
+/* The caption of a sum of doses that are each per beam. */
+static void a_sum_of_beams_is_called_per_none_of_them(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    const struct grid *grid = &plan->images[0].volume->grid;
+    for (; plan->n_doses < 2; plan->n_doses++) {
+        struct dose *dose = &plan->doses[plan->n_doses];
+        *dose = (struct dose){ .unit = "Gy", .per = "beam", .has_frame = true, .frame = DOSE_FRAME_SAME };
+        snprintf(dose->id, sizeof dose->id, "run-%zu", plan->n_doses + 1);
+        snprintf(dose->name, sizeof dose->name, "Run %zu", plan->n_doses + 1);
+        dose->components[dose->n_components++] =
+            (struct dose_component){ .quantity = DOSE_TOTAL, .values = made_volume(grid, VOXEL_F32, ten) };
+    }
+    for (size_t n_sum = 0; n_sum < 2; n_sum++) {
+        struct scene scene;
+        struct error err = { 0 };
+        char field[128];
+        struct view view = view_default;
+        view.kind = SCENE_KIND_AXIAL;
+        scene_for_plan(plan, &scene);
+        scene.dose.quantity = SCENE_DOSE_QUANTITY_TOTAL;
+        scene.dose.lines.visible = true;
+        free(scene.dose.sum);
+        scene.dose.sum = mem_new(sizeof *scene.dose.sum);
+        scene.dose.n_sum = n_sum;
+        snprintf(scene.dose.sum[0].id, sizeof scene.dose.sum[0].id, "run-2");
+        scene.dose.sum[0].value = scene_dose_part_default;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, "", &err));
+        const char *said = row_text(&words, ANNOTATION_DOSE);
+        assert_non_null(strstr(said, n_sum ? "Dose Run 1|plus Run 2|physical dose in Gy|"
+                                           : "Dose Run 1|physical dose in Gy per beam|"));
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 static void a_highlighted_part_is_described_with_its_limits_its_univels_and_its_weights(void **state)
 {
     (void)state;
@@ -447,6 +487,7 @@ int main(void)
         cmocka_unit_test(a_snapshot_is_described),
         cmocka_unit_test(words_of_the_asker_stand_below_the_title_item_by_item),
         cmocka_unit_test(a_dose_is_described_with_what_it_lacks_and_its_levels),
+        cmocka_unit_test(a_sum_of_beams_is_called_per_none_of_them),
         cmocka_unit_test(a_highlighted_part_is_described_with_its_limits_its_univels_and_its_weights),
         cmocka_unit_test(a_comparison_is_described_with_its_colours_in_place_of_the_levels),
         cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),

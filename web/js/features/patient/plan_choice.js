@@ -68,6 +68,7 @@ export function planPatch(plan, scene, from, to) {
       ...chosen.dose,
       ...compare,
       ...(Object.keys(sum).length && { sum }),
+      ...(beams.length && scene.dose.factor !== 1 && { factor: 1 }), // each beam counts once
       ...(reference && { reference: { ...chosen.dose?.reference, ...reference } }),
     },
   };

@@ -10,6 +10,7 @@ const { choosePresetPatch, editPatch, isEdited, presetOf, presetsFor, tissueFor,
   await load('features/dose/weight_table.js');
 const { referenceText } = await load('features/dose/dose_reference.js');
 const { pinnedAt } = await load('features/dose/pins.js');
+const { planPatch } = await load('features/patient/plan_choice.js');
 const { mergePatch } = await load('wire/merge.js');
 
 const part = (quantity, more = {}) => ({ quantity, unit: 'Gy', per_ppm: false, boron_ppm: null, ...more });
@@ -130,6 +131,24 @@ test('a dose of one beam says so, and so does the sum of those of all beams; one
   assert.deepEqual(choosePatch(ofBeams, all, doses[1]).dose, { id: 'b2', quantity: 'total', sum: { b2: null, b3: null } });
   assert.deepEqual(choosePatch(ofBeams, all, doses[0]).dose, { id: 'b1', quantity: 'total' });
   assert.deepEqual(choosePatch(ofBeams, scene('b1', ['b2']), doses[2]).dose, { id: 'b3', quantity: 'total' });
+});
+
+test('a treatment plan whose beams have doses is shown by their sum, each once, whatever the dose before was multiplied by', () => {
+  const of = (id, n, more = {}) => ({ id, name: id, unit: 'Gy', per: 'beam', plan: n, fit: 'same', components: [part('total')], ...more });
+  const doses = [of('whole', 0, { per: 'fraction' }), of('b1', 1), of('b2', 1), of('b3', 1)];
+  const treatmentPlans = [
+    { label: 'A', structs: null, beams: 1, beam_doses: [] },
+    { label: 'B', structs: null, beams: 3, beam_doses: ['b1', 'b2', 'b3'] },
+  ];
+  const both = { doses, regions: [], beams: [], treatmentPlans };
+  const [from, to] = treatmentPlans;
+  const compare = { mode: 'none' };
+  for (const factor of [1, 30]) {
+    const before = dose({ id: 'whole', quantity: 'total', factor, reference: { kind: 'body', region: '', value: 0 }, compare });
+    const after = mergePatch(before, planPatch(both, before, from, to));
+    assert.deepEqual([after.dose.id, after.dose.factor, after.dose.sum], ['b1', 1, { b2: { factor: 1 }, b3: { factor: 1 } }]);
+    assert.equal(basisWords(both, after), 'Gy · physical total · sum of the doses of 3 beams');
+  }
 });
 
 test('another dose is shown with a quantity that it has, and is no longer added to itself', () => {
