@@ -10,6 +10,16 @@
 
 enum { MAX_REASON_BYTES = 200 };
 
+/* Those of the plan by either of its ids. */
+static void erase_films(struct api *api, const char *plan_id)
+{
+    struct fleet_erase plan;
+    fleet_erase_of(net_fleet(api->net), plan_id, &plan);
+    const char *const ids[] = { plan_id, plan.id, plan.other_id };
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++)
+        api_films_erase(api, ids[i]);
+}
+
 static void was_erased(void *context, int64_t n_rooms, int64_t n_records, const struct problem *problem)
 {
     struct call *call = context;
@@ -17,6 +27,7 @@ static void was_erased(void *context, int64_t n_rooms, int64_t n_records, const 
         call_answer_problem(call, problem);
         return;
     }
+    erase_films(call->api, call->ids[0]); /* ordered meanwhile */
     cJSON *answer = cJSON_CreateObject();
     cJSON_AddNumberToObject(answer, "rooms", (double)n_rooms);
     cJSON_AddNumberToObject(answer, "records", (double)n_records);
@@ -63,7 +74,5 @@ void api_plan_erase(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    const char *const ids[] = { call->ids[0], plan.id, plan.other_id };
-    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++)
-        api_films_erase(api, ids[i]);
+    erase_films(api, call->ids[0]);
 }

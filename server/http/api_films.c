@@ -143,6 +143,8 @@ void api_films_go_on(struct api *api)
     for (struct api_film *film = api->films; film; film = film->next)
         if (film->again_us && now_us >= film->again_us)
             request_again(film);
+        else if (film->again_us)
+            net_look_at(api->net, film->again_us); /* what is looked at once was due for another film */
     start_waiting(api);
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/base/log.h"
 #include "server/auth/auth.h"
+#include "server/http/api_films.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/net/statements.h"
@@ -73,6 +74,9 @@ void api_plan_delete(struct api *api, struct call *call)
         return;
     }
     net_statement_forget(api->net, of.id, of.other_id);
+    api_films_erase(api, of.id);
+    if (of.other_id[0])
+        api_films_erase(api, of.other_id);
     if (api->auth)
         auth_set_owner(api->auth, call->ids[0], "");
     call_answer_nothing(call, 204);

@@ -1,10 +1,13 @@
 // Films where it matters what the renderer says and gets: a made-up renderer (film_renderer.mjs), no pictures. What films show: snapshot.test.mjs.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { bin, call, demo, startDaemon, until } from './daemon.mjs';
+import { holdThread, threadNamed } from './hold.mjs';
+import { putWhole } from './made_dicom.mjs';
 import { Client } from './ws_client.mjs';
 
 let folder, daemon, api;
@@ -42,9 +45,9 @@ const packets = () => {
         .map((line) => JSON.parse(line))
     : [];
 };
-const order = async (quality, seconds = 1) => {
+const order = async (quality, seconds = 1, plan = 'phantom') => {
   const body = { seconds, fps: 4, quality, view: { kind: '3d', size_px: [240, 240] } };
-  const { status, json, text } = await call(`${api}/plans/phantom/video`, 'POST', body);
+  const { status, json, text } = await call(`${api}/plans/${plan}/video`, 'POST', body);
   assert.equal(status, 202, text);
   return json.id;
 };
@@ -71,6 +74,25 @@ test('a film goes on where its renderer was busy for a moment, when that said', 
     'the one film, not from its beginning',
   );
   assert.ok(renders[3].ms - renders[2].ms >= 890, 'after retry_after_ms');
+});
+
+test('each of two films that wait for their renderer goes on by itself, without a call', async () => {
+  const before = new Set(packets().map(({ film }) => film));
+  const pictures = (n) => {
+    const own = packets().filter(({ film, type }) => type === 'render' && !before.has(film));
+    const films = [...new Set(own.map(({ film }) => film))];
+    return own.filter(({ film }) => film === films[n]).length;
+  };
+  await order(4);
+  await until(
+    () => pictures(0),
+    (n) => n >= 3, // the third was refused
+  );
+  await order(4);
+  await until(
+    () => [pictures(0), pictures(1)],
+    (all) => all.every((n) => n === 5),
+  );
 });
 
 test('a film names the patient where that is ordered, and in no other; the audit has both words', async () => {
@@ -194,4 +216,41 @@ test('a film of a recorded meeting is named, refused as busy, cancelled and begu
   assert.equal(frames(pictures(6)), nFrames, 'from its beginning');
   const { headers } = await call(`${api}/jobs/${again}/video`);
   assert.match(headers.get('content-disposition'), /filename="phantom-meeting-\d{8}T\d{6}Z\.webm"/);
+});
+
+test('with an uploaded plan its films go, those that are made and those that were', async () => {
+  putWhole(join(folder, 'case'), { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' });
+  execFileSync('tar', ['-cf', join(folder, 'case.tar'), '-C', folder, 'case']);
+  const sent = await fetch(`${api}/plans?name=case`, {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/x-tar' },
+    body: readFileSync(join(folder, 'case.tar')),
+  });
+  const { id: upload } = await sent.json();
+  await ended(upload);
+  const { plan } = await job(upload);
+  const [done, running, other] = [await order(90, 1, plan), await order(2, 1, plan), await order(91)];
+  for (const id of [done, other]) assert.equal((await ended(id)).state, 'done');
+  assert.equal((await call(`${api}/jobs/${done}/video`)).status, 200);
+  assert.equal((await call(`${api}/plans/${plan}`, 'DELETE')).status, 204);
+  assert.equal((await ended(running)).state, 'cancelled');
+  const copy = async (id) => (await call(`${api}/jobs/${id}/video`)).status;
+  assert.deepEqual([await copy(done), await copy(running), await copy(other)], [404, 409, 200]);
+});
+
+test('a film that is made while its plan is being erased is not kept', async (t) => {
+  const before = await order(92);
+  assert.equal((await ended(before)).state, 'done');
+  const held = await holdThread(await threadNamed(daemon.child.pid, 'store'));
+  if (!held) return void t.skip('a thread of another program may not be stopped here');
+  const erased = call(`${api}/plans/phantom/erase`, 'POST', { reason: 'asked for by the patient' });
+  await until(
+    () => call(`${api}/jobs/${before}/video`),
+    ({ status }) => status === 404, // the call has come
+  );
+  const late = await order(93);
+  assert.equal((await ended(late)).state, 'done');
+  held.release();
+  assert.equal((await erased).status, 200);
+  assert.equal((await call(`${api}/jobs/${late}/video`)).status, 404);
 });
