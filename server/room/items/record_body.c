@@ -362,8 +362,10 @@ bool record_may_change(const struct room *room, const struct member *member, con
     cJSON *row, *body = body_of(item, &row);
     const bool is_now = is_of_now(room, body);
     cJSON_Delete(row);
-    return is_now || problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
-                                 "this entry stands under an earlier revision of the plan's files, and stays");
+    return is_now ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
+                       "this entry was written of other files, or before it was stated otherwise whom the plan is "
+                       "of, and stays");
 }
 
 /* The act without its words. */
