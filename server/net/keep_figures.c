@@ -140,6 +140,7 @@ static cJSON *view_to_draw(const cJSON *views, const char *kind, const char **mo
     if (!of_room)
         cJSON_AddStringToObject(patch, "kind", kind);
     cJSON_DeleteItemFromObjectCaseSensitive(patch, "size_px");
+    cJSON_DeleteItemFromObjectCaseSensitive(patch, "foot_px"); /* on paper nothing of a page stands there */
     json_add(patch, "size_px", cJSON_CreateDoubleArray((double[]){ KEEP_FIGURE_WIDTH_PX, KEEP_FIGURE_HEIGHT_PX }, 2));
     cJSON *view = view_document_patch(NULL, patch, NULL);
     cJSON_Delete(patch);

@@ -229,6 +229,70 @@ static void a_dark_pixel_to_each_side_sets_a_line_off_from_bone(void **state)
     shots_forget(plan);
 }
 
+/* Words stand in the strip at the foot of a slice: below a fifth of its height, lines over the slice have 30 % of their
+ * strength there, above it all of it. Right of the middle the block's edge runs down between pixels 249 and 250. */
+static void lines_fade_in_the_strip_at_the_foot(void **state)
+{
+    (void)state;
+    enum { FOOT = 28, EDGE = 250, ABOVE = 230 };
+    struct grid grid = made_cube_grid(20);
+    struct plan *plan = made_plan(&grid, block, ball, 1);
+    made_plan_add_image(plan, &grid, VOXEL_F32, white);
+    static const double line[3] = { 0x20, 0xff, 0x20 }, halo[3] = { 0x07, 0x08, 0x0a };
+    for (int ratio = 1; ratio <= 2; ratio++) {
+        struct image *images[2];
+        for (int i = 0; i < 2; i++) {
+            struct scene scene = outlined(plan, SCENE_OUTLINE_METHOD_SURFACE, vec3(0.5, 0.5, 0.5));
+            shots_style(&scene, "ball")->representation = SCENE_REPRESENTATION_UNIVELS;
+            scene.outline.width_px = 4.0 / ratio;
+            struct view view = shots_view(SCENE_KIND_AXIAL, vec3(0, -12, 0), 10); /* the block is cut off below */
+            view.pixel_ratio = ratio;
+            view.foot_px = i == 0 ? 0 : FOOT;
+            images[i] = take(plan, scene, view);
+        }
+        const int first = SHOTS_HEIGHT - FOOT * ratio, faded = first + FOOT * ratio / 5 + 1;
+        assert_memory_equal(images[1]->rgba, images[0]->rgba, 4 * (size_t)SHOTS_WIDTH * (size_t)first);
+        for (int c = 0; c < 3; c++) {
+            assert_close(shots_pixel(images[1], EDGE, ABOVE)[c], line[c], 1);
+            for (int y = first; y < SHOTS_HEIGHT; y++) {
+                const double share = y < faded ? 0.65 : 0.3, slack = y < faded ? 0.35 * 255 + 1 : 1.5;
+                assert_close(shots_pixel(images[1], EDGE, y)[c], 255 - share * (255 - line[c]), slack);
+                assert_close(shots_pixel(images[1], EDGE + 2, y)[c], 255 - share * (255 - halo[c]), slack);
+                assert_int_equal(shots_pixel(images[1], EDGE - 40, y)[c], 255); /* the slice itself does not fade */
+            }
+        }
+        image_destroy(images[0]);
+        image_destroy(images[1]);
+    }
+    shots_forget(plan);
+}
+
+/* In a picture of half the size the strip is half as high; a picture of the space has none. */
+static void the_strip_at_the_foot_is_reduced_with_the_picture_and_only_of_slices(void **state)
+{
+    (void)state;
+    const struct render_options half = { SHOTS_WIDTH / 2, SHOTS_HEIGHT / 2, SURFACE_FULL, true };
+    struct grid grid = made_cube_grid(20);
+    struct plan *plan = made_plan(&grid, block, ball, 1);
+    made_plan_add_image(plan, &grid, VOXEL_F32, white);
+    struct image *images[2][2];
+    for (int kind = 0; kind < 2; kind++)
+        for (int i = 0; i < 2; i++) {
+            struct scene scene = outlined(plan, SCENE_OUTLINE_METHOD_SURFACE, vec3(0.5, 0.5, 0.5));
+            scene.axes.visible = true;
+            struct view view = shots_view(kind == 0 ? SCENE_KIND_AXIAL : SCENE_KIND_3D, vec3(0, -12, 0), 10);
+            view.foot_px = i == 0 ? 0 : 40;
+            images[kind][i] = shots_take(plan, scene, view, &half, NULL);
+        }
+    const size_t row = 4 * (size_t)SHOTS_WIDTH / 2, n_above = SHOTS_HEIGHT / 2 - 20;
+    assert_memory_equal(images[0][1]->rgba, images[0][0]->rgba, row * n_above);
+    assert_memory_not_equal(images[0][1]->rgba + row * n_above, images[0][0]->rgba + row * n_above, row);
+    assert_memory_equal(images[1][1]->rgba, images[1][0]->rgba, row * SHOTS_HEIGHT / 2);
+    for (int i = 0; i < 4; i++)
+        image_destroy(images[i / 2][i % 2]);
+    shots_forget(plan);
+}
+
 /* A moving picture does not wait for a surface: it shows marching squares, which lie half a univel further out than
  * traced outlines. A still builds the surface; the next moving picture shows it. */
 static void a_moving_picture_outlines_univels_until_the_surface_is_built(void **state)
@@ -343,6 +407,8 @@ int main(void)
         cmocka_unit_test(a_spheres_outline_is_within_half_a_univel_of_its_radius),
         cmocka_unit_test(univels_are_outlined_along_their_faces),
         cmocka_unit_test(a_dark_pixel_to_each_side_sets_a_line_off_from_bone),
+        cmocka_unit_test(lines_fade_in_the_strip_at_the_foot),
+        cmocka_unit_test(the_strip_at_the_foot_is_reduced_with_the_picture_and_only_of_slices),
         cmocka_unit_test(a_region_that_cannot_have_its_shape_is_outlined_all_the_same),
         cmocka_unit_test(a_moving_picture_outlines_univels_until_the_surface_is_built),
         cmocka_unit_test(kept_lines_make_the_same_picture),

@@ -21,6 +21,8 @@ static const uint32_t univel_rgb = 0xffffff;
 /* Under outlines, to keep light lines readable on bone. */
 static const uint32_t halo_rgb = 0x07080a;
 static const double halo_px = 1;
+/* How strong lines are in the strip at the foot of a slice, and the part of its height in which they fade to that. */
+static const double foot_strength = 0.3, foot_fading = 0.2;
 
 enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
 
@@ -456,6 +458,48 @@ static bool paint_draw(struct target *target, const struct draw *draw, struct er
     return true;
 }
 
+/* ---- the strip at the foot of a slice ---------------------------------------------------------------------------- */
+
+/* Its rows as they are before lines are painted. */
+struct foot {
+    int n_rows; /* 0: there is no strip */
+    uint8_t *rgba;
+};
+
+static size_t foot_first(const struct foot *foot, const struct image *image)
+{
+    return 4 * (size_t)image->width_px * (size_t)(image->height_px - foot->n_rows);
+}
+
+static bool foot_keep(const struct target *target, struct foot *foot, struct error *err)
+{
+    const struct image *image = target->image;
+    const struct snapshot *snapshot = target->scope->snapshot;
+    const double height_px = snapshot_is_pane(snapshot) ? snapshot->view.foot_px * target->scale : 0;
+    foot->n_rows = (int)lround(fmin(height_px, image->height_px));
+    if (foot->n_rows == 0)
+        return true;
+    const size_t n = 4 * (size_t)image->width_px * (size_t)foot->n_rows;
+    foot->rgba = mem_array(n, 1, UINT64_MAX, err);
+    if (foot->rgba)
+        memcpy(foot->rgba, image->rgba + foot_first(foot, image), n);
+    return foot->rgba != NULL;
+}
+
+/* Lets the lines that were painted over the strip fade. */
+static void foot_fade(const struct foot *foot, struct image *image)
+{
+    const size_t row_bytes = 4 * (size_t)image->width_px;
+    for (int row = 0; row < foot->n_rows; row++) {
+        const double faded = fmin((row + 0.5) / (foot_fading * foot->n_rows), 1);
+        const int strength = (int)lround(256 * (1 - (1 - foot_strength) * faded));
+        const uint8_t *before = foot->rgba + row_bytes * (size_t)row;
+        uint8_t *now = image->rgba + foot_first(foot, image) + row_bytes * (size_t)row;
+        for (size_t i = 0; i < row_bytes; i++)
+            now[i] = (uint8_t)((now[i] * strength + before[i] * (256 - strength) + 128) / 256);
+    }
+}
+
 bool overlay_draw(struct overlay *overlay, const struct draw_scope *scope, const struct draw_list *list,
                   struct image *image, struct check_counts *check, struct error *err)
 {
@@ -468,9 +512,13 @@ bool overlay_draw(struct overlay *overlay, const struct draw_scope *scope, const
                              .paint = paint_create(image, err),
                              .scale = image->width_px / snapshot_line_width(scope->snapshot),
                              .check = check };
-    bool is_good = target.paint && paint_halos(&target, list, err);
+    struct foot foot = { 0, NULL };
+    bool is_good = target.paint && foot_keep(&target, &foot, err) && paint_halos(&target, list, err);
     for (size_t i = list->n_in_image; is_good && i < list->n; i++)
         is_good = paint_draw(&target, &list->draws[i], err);
+    if (is_good)
+        foot_fade(&foot, image);
+    free(foot.rgba);
     paint_destroy(target.paint);
     paint_destroy(target.alone);
     trim(overlay);

@@ -52,10 +52,10 @@ static void grow_camera(cJSON *view, double factor)
     }
 }
 
-/* The shared document in the size and with the pixel_ratio of the wall's; NULL: no memory. */
+/* The shared document in the size and with the pixel_ratio and foot_px of the wall's; NULL: no memory. */
 static cJSON *document_for(const cJSON *shared, const cJSON *own)
 {
-    static const char *const fields[] = { "size_px", "pixel_ratio" };
+    static const char *const fields[] = { "size_px", "pixel_ratio", "foot_px" };
     cJSON *view = cJSON_Duplicate(shared, true);
     for (size_t i = 0; view && i < sizeof fields / sizeof fields[0]; i++) {
         cJSON *copy = cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(own, fields[i]), true);
@@ -95,17 +95,18 @@ static bool follow(struct room *room, struct stream *stream)
 
 static bool is_same_size(const cJSON *a, const cJSON *b)
 {
-    static const char *const fields[] = { "size_px", "pixel_ratio" };
+    static const char *const fields[] = { "size_px", "pixel_ratio", "foot_px" };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
         if (!json_equal(cJSON_GetObjectItemCaseSensitive(a, fields[i]), cJSON_GetObjectItemCaseSensitive(b, fields[i])))
             return false;
     return true;
 }
 
-/* The document with which a view begins that nobody has shown: of the wall's, kind, number, plane, size and ratio. */
+/* The document with which a view begins that nobody has shown: of the wall's, kind, number, plane, size, ratio and
+ * foot. */
 static cJSON *first_document(const struct room *room, const cJSON *wanted)
 {
-    static const char *const fields[] = { "kind", "number", "plane", "size_px", "pixel_ratio" };
+    static const char *const fields[] = { "kind", "number", "plane", "size_px", "pixel_ratio", "foot_px" };
     cJSON *patch = cJSON_CreateObject();
     for (size_t i = 0; patch && i < sizeof fields / sizeof fields[0]; i++)
         json_add(patch, fields[i], cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(wanted, fields[i]), true));

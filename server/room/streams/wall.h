@@ -16,8 +16,8 @@ enum {
 
 /* True of a member that is a wall: it has no views but those that follow. */
 bool member_is_wall(const struct member *member);
-/* The stream for a wall's view with this document, of which kind, number, plane, size and pixel_ratio count. Takes
- * document; NULL with problem: no memory. */
+/* The stream for a wall's view with this document, of which kind, number, plane, size, pixel_ratio and foot_px count.
+ * Takes document; NULL with problem: no memory. */
 NODISCARD struct stream *wall_stream(struct room *room, cJSON *document, struct problem *problem);
 /* When a moving picture of the stream may be requested next. */
 int64_t wall_due_us(const struct stream *stream);

@@ -9,6 +9,13 @@ import { say } from './words.js';
 import { pixelRatio } from '../parts/page_look.js';
 
 const usualSize = [1024, 768]; // of a pane that was never shown
+const footPx = 28; // of a slice, where letters, scale and window stand (pane/overlay.js)
+
+/** The parts of a view's document that are of the screen: lines are as wide on any, and fade where words stand. */
+function screenOf(document = {}) {
+  const ratio = Math.max(1, pixelRatio());
+  return { ...((document.pixel_ratio ?? 1) !== ratio && { pixel_ratio: ratio }), foot_px: footPx };
+}
 
 export class Following {
   #room;
@@ -119,9 +126,7 @@ export class Following {
 
   /** The document with which a view opens. */
   documentToOpen(view) {
-    const document = { ...view.document.value, size_px: view.ownSize };
-    const ratio = Math.max(1, pixelRatio()); // lines as wide on any screen
-    if ((document.pixel_ratio ?? 1) !== ratio) document.pixel_ratio = ratio;
+    const document = { ...view.document.value, size_px: view.ownSize, ...screenOf(view.document.value) };
     if (this.isFollowing.value) delete document.override;
     else if (this.override.value) document.override = this.override.value;
     return document;
@@ -237,6 +242,7 @@ export class Following {
       ...(number > 1 && { number }),
       ...(view.kind === 'oblique' && plane && { plane }),
       size_px,
+      ...screenOf(),
       ...(view.kind === 'beam' && { beam: ownBeam(view.document.value.beam, view.painted.value, beam) }),
       camera: { ...widen(shared, view.kind, view.widening), projection: camera.projection },
       override: mergePatch(view.document.value.override ?? {}, override),

@@ -10,7 +10,7 @@ export const joinMs = 400;
 
 // Fields that only make sense together: one of them is never restored without the others.
 const isUnit = (path) => /^(camera|image\.window|image\.looks\.[^.]+)$/.test(path.join('.'));
-const ignored = ['size_px', 'pixel_ratio']; // follows the pane, not the person
+const ignored = ['size_px', 'pixel_ratio', 'foot_px']; // follows the pane, not the person
 
 /**
  * @typedef {object} Change one field, or one unit of fields, of one document

@@ -14,6 +14,7 @@ const shared = {
   plane: '',
   size_px: [900, 600],
   pixel_ratio: 1,
+  foot_px: 0,
   camera,
   beam: { along_mm: null, crosshair: true, aperture_mm: null },
   override: {},
@@ -69,7 +70,7 @@ test('a follower who moves the crosshair leaves: with their own size, scale and 
     [2],
   );
   const [{ document }] = views;
-  assert.deepEqual(document.size_px, [400, 400]);
+  assert.deepEqual([document.size_px, document.foot_px], [[400, 400], 28]);
   // 900 x 600 is shown 400 px wide, at 4/9; 300 mm over 600 px is 0.5 mm a px, so 1.125 mm per own px: 450 mm over 400 px
   assert.ok(Math.abs(document.camera.height_mm - 450) < 1e-9);
   assert.deepEqual(document.override, {
@@ -80,6 +81,22 @@ test('a follower who moves the crosshair leaves: with their own size, scale and 
     told.map(([, text, , action]) => [text, action.word]),
     [['On your own.', 'Return']],
   );
+});
+
+test('lines are as wide on any screen and fade at the foot of slices: shown first, and of their own after leaving', () => {
+  const { devicePixelRatio } = globalThis;
+  globalThis.devicePixelRatio = 2;
+  try {
+    const { room, connection } = follower();
+    room.showView(1, [300, 300]);
+    const { document: opened } = connection.sent.find(({ type }) => type === 'view.open');
+    assert.deepEqual([opened.pixel_ratio, opened.foot_px], [2, 28]);
+    room.following.leave();
+    const { views } = connection.sent.find(({ type }) => type === 'follow');
+    for (const { document } of views) assert.deepEqual([document.pixel_ratio, document.foot_px], [2, 28]);
+  } finally {
+    globalThis.devicePixelRatio = devicePixelRatio;
+  }
 });
 
 test('the drag that made a member leave goes on in the own view, in its scale', () => {

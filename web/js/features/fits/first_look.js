@@ -25,7 +25,7 @@ export function endLook() {
 
 function viewDocument(view) {
   const [width, height] = view.document.peek().size_px;
-  return { ...view.document.peek(), size_px: [widthPx, Math.max(Math.round((widthPx * height) / width), 1)] };
+  return { ...view.document.peek(), size_px: [widthPx, Math.max(Math.round((widthPx * height) / width), 1)], foot_px: 0 };
 }
 
 async function draw({ room, ui, api }, use, key) {

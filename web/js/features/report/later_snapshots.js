@@ -13,11 +13,11 @@ const mostPx = 4096;
 /** How pictures are read and shown again: no part of what a first visit loads. */
 const records = () => import('./snapshot_record.js');
 
-/** The view as it is on the screen, as large as a report needs it. */
+/** The view as it is on the screen, as large as a report needs it; nothing of the page stands at its foot. */
 function viewDocument(view) {
   const [width, height] = view.document.value.size_px;
   const factor = Math.min(Math.max(1, leastWidthPx / width), mostPx / Math.max(width, height));
-  return { ...view.document.value, size_px: [Math.round(width * factor), Math.round(height * factor)] };
+  return { ...view.document.value, size_px: [Math.round(width * factor), Math.round(height * factor)], foot_px: 0 };
 }
 
 async function save(world, isNamed) {
