@@ -249,7 +249,7 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
       assert.equal(await pane.locator('[data-letters]').getAttribute('data-letters'), 'RA LP S I');
       const [x, y] = await middleOf(page.locator('#picture-5'));
       await page.mouse.move(x, y);
-      await page.mouse.wheel(0, -300); // three voxels of 1 mm, on
+      for (let notch = 0; notch < 3; notch++) await page.mouse.wheel(0, -100); // three voxels of 1 mm, on
       const along = (from, to) => to.reduce((sum, value, axis) => sum + (value - from[axis]) * normal[axis], 0);
       await comes((now) => along(before, now.image.obliques['plane-2'].origin_mm), 3, 0.01);
       const { origin_mm: origin } = (await scene()).image.obliques['plane-2'];

@@ -341,7 +341,7 @@ describe("one planner's hour", { skip: missing && `${missing} is not there` }, (
         await press(undo);
         await comes(scene, (now) => crosshairOf(now)[2] === slice, 'the slice of before');
       } else {
-        await page.mouse.wheel(0, -100 * (options.deviceScaleFactor ?? 1)); // the tool counts in the screen's pixels, the page is told its own
+        await page.mouse.wheel(0, -100); // with two pixels to one of the page it is told 50, and half of wheelDeltaY, as a page at 200 % is
         await comes(scene, (now) => Math.abs(crosshairOf(now)[2] - slice - step[2]) < 0.1, `one slice up from ${slice} mm`);
       }
       await full(page, 2);

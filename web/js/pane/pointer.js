@@ -6,6 +6,9 @@ const slopPx = 4; // a press that moves less is a tap
 const doubleMs = { mouse: 250, pen: 300, touch: 300 };
 const doublePx = 24;
 const longMs = 500;
+const notchFrom = 40; // wheelDeltaY of a notch: 120 at 100 %, by the zoom less in Chromium, as deltaY is
+const turnMs = 200; // a pause from which on a turn of the wheel, or a stroke on a trackpad, is another one
+const [notchPx, notchLines] = [100, 3];
 const earlyMs = 14; // a move that comes this long after the one before is not kept until the next animation frame
 
 /**
@@ -34,6 +37,8 @@ export class PointerReader {
   #tapTimer = 0;
   #longTimer = 0;
   #wheelRest = 0;
+  #wheelAt = -Infinity;
+  #notch = 0; // wheelDeltaY of one notch in this turn; 0: of a trackpad
   #movedAt = -Infinity;
   #abort = new AbortController();
 
@@ -185,11 +190,27 @@ export class PointerReader {
     if (tap) this.#handlers.tap({ ...tap, at: performance.now() }); // the wait is no delay of the picture
   }
 
+  /**
+   * The notches of a wheel; else, of a trackpad, their like in px. No measure of a notch is the same in all browsers, systems and zooms, but the first event of
+   * a turn is one notch, while a trackpad begins with less. That of a Mac tells three times its px.
+   */
+  #notches({ deltaMode, deltaY, wheelDeltaY, timeStamp }) {
+    const turned = Math.abs(wheelDeltaY || 0);
+    if (timeStamp - this.#wheelAt > turnMs)
+      this.#notch = turned >= notchFrom && (deltaMode || turned !== Math.abs(3 * deltaY)) ? turned : 0;
+    this.#wheelAt = timeStamp;
+    const n = this.#notch && turned / this.#notch;
+    const isWhole = n > 0.98 && Math.abs(n - Math.round(n)) < 0.02;
+    if (!isWhole) return deltaY / [notchPx, notchLines, 1][deltaMode || 0];
+    this.#wheelRest = 0; // of a trackpad
+    return Math.sign(deltaY) * Math.round(n);
+  }
+
   #wheel(event) {
     event.preventDefault();
-    const unit = event.deltaMode === 1 ? 40 : event.deltaMode === 2 ? 400 : 1;
     // trackpads send many small deltas: reports whole steps and keeps the rest
-    this.#wheelRest += (event.deltaY * unit) / 100;
+    const notches = this.#notches(event);
+    this.#wheelRest += notches;
     const steps = event.ctrlKey ? this.#wheelRest : Math.trunc(this.#wheelRest);
     if (steps === 0) return;
     this.#wheelRest -= steps;

@@ -45,6 +45,53 @@ function reader() {
   return { element, pointer, click, names: () => told.map(([name]) => name), told };
 }
 
+/** Turns a wheel: events of {deltaY, wheelDeltaY, deltaMode}, everyMs apart. @returns {number[]} the steps that were told */
+function turn(events, everyMs) {
+  const { element, told } = reader();
+  let at = 1000;
+  for (const how of events) {
+    element.fire('wheel', 10, 10, { deltaMode: 0, ctrlKey: false, ...how, at });
+    at += everyMs;
+  }
+  return told.map(([, { steps }]) => steps);
+}
+const times = (n, how) => Array.from({ length: n }, () => how);
+
+// as Chromium 150 tells a notch: 100 px and 120 at 100 %, both by the zoom less; whatever the pixels of the screen
+test('a notch of a wheel is a step at every zoom of the page, quick or slow, whatever its px', () => {
+  for (const zoom of [0.5, 0.8, 1, 1.1, 1.25, 1.5, 2, 2.5, 3])
+    for (const px of [53, 100, 120, 300]) {
+      const notch = { deltaY: px / zoom, wheelDeltaY: -Math.trunc(120 / zoom) };
+      assert.deepEqual(turn(times(6, notch), 400), times(6, 1), `slowly, ${px} px at ${zoom}`);
+      assert.deepEqual(turn(times(6, notch), 16), times(6, 1), `quickly, ${px} px at ${zoom}`);
+    }
+  const back = { deltaY: -50, wheelDeltaY: 60 };
+  assert.deepEqual(turn([back, back, { deltaY: 50, wheelDeltaY: -60 }], 50), [-1, -1, 1], 'back and forth');
+  assert.deepEqual(turn([back, { deltaY: -100, wheelDeltaY: 120 }], 16), [-1, -2], 'two notches in one event');
+});
+
+test('a notch of Firefox is a step: lines, pages, px', () => {
+  assert.deepEqual(turn(times(6, { deltaMode: 1, deltaY: 3, wheelDeltaY: -120 }), 50), times(6, 1));
+  assert.deepEqual(turn(times(6, { deltaMode: 1, deltaY: 3 }), 50), times(6, 1), 'without wheelDeltaY');
+  assert.deepEqual(turn(times(3, { deltaMode: 2, deltaY: -1 }), 50), times(3, -1), 'a page');
+  assert.deepEqual(turn(times(3, { deltaMode: 0, deltaY: 48, wheelDeltaY: -120 }), 50), times(3, 1), 'px');
+});
+
+test('small strokes of a trackpad add up to steps of 100 px', () => {
+  const sum = (steps) => steps.reduce((all, step) => all + step, 0);
+  const linux = times(40, { deltaY: 8, wheelDeltaY: -10 });
+  assert.equal(sum(turn(linux, 8)), 3);
+  assert.equal(sum(turn(linux, 300)), 3, 'slowly');
+  const mac = [4, 20, 64, 80, 72, 40, 16, 4].map((deltaY) => ({ deltaY, wheelDeltaY: -3 * deltaY }));
+  assert.equal(sum(turn(mac, 8)), 3);
+  assert.equal(sum(turn(mac.slice(2), 8)), 2, 'begun at once');
+  assert.deepEqual(
+    turn([...times(5, { deltaY: 10, wheelDeltaY: -12 }), { deltaY: -100, wheelDeltaY: 120 }], 300),
+    [-1],
+    'a wheel after it',
+  );
+});
+
 /** The timers of the page stand still while the test runs, and go on by pass(ms). */
 const withTimers = (name, run) =>
   test(name, () => {
