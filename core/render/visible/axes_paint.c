@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "core/render/visible/axes_numbers.h"
 #include "core/render/visible/visible.h"
 #include "core/scene/axes.h"
 
@@ -75,6 +76,25 @@ static void paint_lines(const struct space_pen *pen, uint32_t rgb, struct stroke
     }
 }
 
+static bool has_numbers(const struct scene *scene)
+{
+    return scene->axes.ticks && scene->axes.numbers;
+}
+
+/* Numbers the axes from where they meet to their ends. */
+static void number_lines(const struct space_pen *pen, uint32_t rgb)
+{
+    const struct scene *scene = &pen->snapshot->scene;
+    struct vec3 meet;
+    struct axis_end ends[AXES_N_ENDS];
+    struct axes_numbers_line lines[AXES_N_ENDS];
+    if (!axes_of_scene(pen->snapshot->plan, scene, &meet, ends))
+        return;
+    for (int i = 0; i < AXES_N_ENDS; i++)
+        lines[i] = (struct axes_numbers_line){ meet, ends[i].at_lps_mm, scene->axes.letters, NULL };
+    axes_numbers_paint(pen, lines, AXES_N_ENDS, rgb, halo_of(pen), plain);
+}
+
 static struct vec3 corner_of(const struct box3 *box, int corner)
 {
     return vec3(corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,
@@ -101,6 +121,35 @@ static void paint_box(const struct space_pen *pen, uint32_t rgb, struct stroke s
         }
 }
 
+/* Along three edges of the box, of those along each axis the one that lies farthest out in the picture, away from the
+ * box. */
+static void number_box(const struct space_pen *pen, uint32_t rgb)
+{
+    const struct box3 *box = &pen->snapshot->plan->bounds_lps_mm;
+    struct axes_numbers_line lines[3];
+    struct paint_point middle;
+    size_t n = 0;
+    if (box3_is_empty(box) || !vec3_is_finite(box->low) || !vec3_is_finite(box->high) ||
+        !space_pen_place(pen, vec3_scale(vec3_add(box->low, box->high), 0.5), &middle))
+        return;
+    const double away_px[2] = { middle.x, middle.y };
+    for (int axis = 1; axis < 8; axis *= 2) {
+        double farthest_px = -1;
+        for (int corner = 0; corner < 8; corner++) {
+            const struct vec3 from = corner_of(box, corner), to = corner_of(box, corner | axis);
+            struct paint_point at;
+            if (corner & axis || !space_pen_place(pen, vec3_scale(vec3_add(from, to), 0.5), &at))
+                continue;
+            const double px = hypot(at.x - middle.x, at.y - middle.y);
+            if (px > farthest_px + 0.5 * pen->scale) /* of edges as far, the first */
+                lines[n] = (struct axes_numbers_line){ from, to, false, away_px };
+            farthest_px = fmax(farthest_px, px);
+        }
+        n += farthest_px >= 0;
+    }
+    axes_numbers_paint(pen, lines, n, rgb, halo_of(pen), plain);
+}
+
 static void paint_corner(const struct space_pen *pen, uint32_t rgb, struct stroke stroke)
 {
     struct axes_corner corner;
@@ -121,8 +170,16 @@ void axes_paint(const struct space_pen *pen, uint32_t rgb, double width_px)
     const struct stroke stroke = stroke_of(pen, width_px);
     switch (pen->snapshot->scene.axes.form) {
     case SCENE_AXES_FORM_MIDDLE:
-    case SCENE_AXES_FORM_CROSSHAIR: paint_lines(pen, rgb, stroke); break;
-    case SCENE_AXES_FORM_BOX: paint_box(pen, rgb, stroke); break;
+    case SCENE_AXES_FORM_CROSSHAIR:
+        paint_lines(pen, rgb, stroke);
+        if (has_numbers(&pen->snapshot->scene))
+            number_lines(pen, rgb);
+        break;
+    case SCENE_AXES_FORM_BOX:
+        paint_box(pen, rgb, stroke);
+        if (has_numbers(&pen->snapshot->scene))
+            number_box(pen, rgb);
+        break;
     case SCENE_AXES_FORM_CORNER: paint_corner(pen, rgb, stroke); break;
     }
 }

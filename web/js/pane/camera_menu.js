@@ -57,13 +57,13 @@ const axesForms = [
 ];
 
 /** The patient's axes: whether, where, with what. */
-function axesChoice({ visible, form, letters, ticks }, isDisabled, change) {
+function axesChoice({ visible, form, letters, ticks, numbers }, isDisabled, change) {
   const set = (name) => (value, event) => change({ [name]: value }, event);
   return html`${checkbox(say.axes, visible, isDisabled, set('visible'), say.axesIs)}${
     visible
       ? html`<select aria-label=${say.axesForm} ?disabled=${isDisabled} @change=${(event) => change({ form: event.target.value }, event)}>${axesForms.map(
           ([id, name]) => html`<option value=${id} .selected=${live(id === form)}>${name}</option>`,
-        )}</select>${checkbox(say.axesLetters, letters, isDisabled, set('letters'))}${form === 'corner' ? nothing : checkbox(say.axesTicks, ticks, isDisabled, set('ticks'), say.axesTicksAre)}`
+        )}</select>${checkbox(say.axesLetters, letters, isDisabled, set('letters'))}${form === 'corner' ? nothing : checkbox(say.axesTicks, ticks, isDisabled, set('ticks'), say.axesTicksAre)}${ticks && form !== 'corner' ? checkbox(say.axesNumbers, numbers, isDisabled, set('numbers'), say.axesNumbersAre) : nothing}`
       : nothing
   }`;
 }

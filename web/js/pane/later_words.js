@@ -25,6 +25,8 @@ export const say = sentences('pane.later', {
   axesLetters: 'Letters',
   axesTicks: 'Ticks',
   axesTicksAre: 'One every cm, a longer one every 5 cm',
+  axesNumbers: 'Numbers',
+  axesNumbersAre: 'In mm, at longer ticks',
   linkCamerasHow: 'For two 3-D panes: put 3-D 2 into a pane by its name',
   onlyTargets: 'Only targets here',
   onlyTargetsIs: 'In this picture alone, for everybody who sees it',
