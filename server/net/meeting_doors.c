@@ -160,6 +160,37 @@ static bool about_case(void *context, const struct room *room, struct room_meeti
     return true;
 }
 
+/* Whether this user presents in the room, and somebody else is there. A wall is nobody. */
+static bool presents_to_others(const struct room *room, const char *user)
+{
+    struct room_present present;
+    bool presents = false;
+    size_t n_others = 0;
+    for (size_t i = 0; room_present_at(room, i, &present); i++) {
+        if (!present.connection || present.role == WIRE_MEMBER_ROLE_WALL)
+            continue;
+        const bool is_same = strcmp(present.user, user) == 0;
+        presents = presents || (is_same && present.presents);
+        n_others += !is_same;
+    }
+    return presents && n_others > 0;
+}
+
+static size_t presents_case(void *context, const struct room *room, void *connection)
+{
+    struct meeting_case *one;
+    struct room_present present;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    if (!meeting || meeting->ended_ms || !room_present_of(room, connection, &present) || !present.user[0])
+        return 0;
+    for (size_t i = 0; i < meeting->n_cases; i++) {
+        const struct net_room *other = rooms_find(context, meeting->cases[i]->room);
+        if (other && other->room != room && presents_to_others(other->room, present.user))
+            return i + 1;
+    }
+    return 0;
+}
+
 const struct room_meeting_callbacks meeting_doors = { .link = find_link,
                                                       .link_is_over = link_is_over,
                                                       .role = role_of,
@@ -167,4 +198,5 @@ const struct room_meeting_callbacks meeting_doors = { .link = find_link,
                                                       .entered = entered,
                                                       .next = next,
                                                       .go = go_along,
-                                                      .about = about_case };
+                                                      .about = about_case,
+                                                      .presents_case = presents_case };

@@ -489,4 +489,90 @@ describe('A meeting of three cases', { concurrency: false }, () => {
     const { made_ms: _, ...again } = await ok(`/meetings/${meeting}/minutes`, pat);
     assert.deepEqual({ ...again, made_ms: before.made_ms }, before);
   });
+
+  test('who presents one case to others is given no control in the room of another, and takes none; each room has one presenter, and nothing is lost', async () => {
+    const made = await ok('/meetings', pat, 'POST', {
+      name: 'Two rooms',
+      cases: [plans[0], plans[2]].map((plan) => ({ plan })),
+      people: [{ who: 'rae' }],
+    });
+    const { cases: begun } = await ok(`/meetings/${made.id}/case`, pat, 'POST', { case: 'next', from: null });
+    const first = begun[0].room;
+    const { room: second } = (await ok(`/meetings/${made.id}/cases/${begun[1].id}/room`, pat, 'POST', {})).cases[1];
+    const presenters = async (client) =>
+      (await client.until(() => client.messages.findLast(({ type }) => type === 'members')?.members, 'members'))
+        .filter(({ presenting }) => presenting)
+        .map(({ name, id }) => [name, id]);
+    const presents = (client, name) =>
+      client.until(
+        () =>
+          client.messages
+            .findLast(({ type }) => type === 'members')
+            ?.members.filter(({ presenting }) => presenting)
+            .map((one) => one.name)
+            .join() === name,
+        `${name} presents`,
+      );
+    // one after the other: who is alone presents
+    const patHere = await welcomed(pat, first);
+    await presents(patHere, 'Pat Lee');
+    const raeHere = await welcomed(rae, first);
+    const raeThere = await welcomed(rae, second);
+    await presents(raeThere, 'Rae');
+    const patThere = await welcomed(pat, second);
+    const scene = () => ok(`/rooms/${second}/scene`, pat);
+    await patThere.message('renderer', ({ state }) => state === 'ready');
+    raeThere.send({ type: 'scene.patch', input: 1, patch: { axes: { visible: true } } });
+    await patThere.message('scene');
+    const before = await scene();
+    assert.equal(before.axes.visible, true);
+
+    raeThere.send({ type: 'control.give', member: patThere.first.member });
+    const refused = await raeThere.message('problem', ({ to }) => to === 'control.give');
+    assert.deepEqual(
+      [refused.problem.type, refused.problem.code, refused.problem.detail_code],
+      ['/problems/conflict', 'presents', 'member-presents-case'],
+    );
+    assert.deepEqual(refused.problem.detail_values, { member: patThere.first.member, n: 1 });
+    patThere.send({ type: 'control.take' });
+    assert.equal((await patThere.message('problem', ({ to }) => to === 'control.take')).problem.code, 'presents');
+    raeHere.send({ type: 'control.request' }); // she presents the other case, to Pat
+    await patHere.message('control', ({ requests }) => requests.length === 1);
+    patHere.send({ type: 'control.give', member: raeHere.first.member });
+    const other = await patHere.message('problem', ({ to }) => to === 'control.give');
+    assert.deepEqual([other.problem.code, other.problem.detail_values.n], ['presents', 2]);
+    assert.deepEqual(
+      [await presenters(raeHere), await presenters(patThere)],
+      [[['Pat Lee', patHere.first.member]], [['Rae', raeThere.first.member]]],
+    );
+    assert.deepEqual(await scene(), before, 'what she prepared is there');
+    assert.deepEqual(patHere.messages.findLast(({ type }) => type === 'control').requests, [raeHere.first.member], 'her request stands');
+
+    // nobody looks on in the second room: what is there is hers to prepare, and she may have control here
+    patThere.cut();
+    await raeThere.until(
+      () =>
+        raeThere.messages.findLast(({ type }) => type === 'members')?.members.every(({ name, connected }) => name === 'Rae' || !connected),
+      'Pat is away',
+    );
+    patHere.send({ type: 'control.give', member: raeHere.first.member });
+    await presents(patHere, 'Rae');
+
+    // the meeting goes on to the second case: Rae presents there by the seat that she came with, and no more by the one that she had
+    raeHere.send({ type: 'meeting.next', from: begun[0].id });
+    const seat = await raeHere.message('meeting.case');
+    assert.equal(seat.room, second);
+    const raeCame = await welcomed(rae, second, seatIn(seat));
+    await raeThere.until(
+      () =>
+        raeThere.messages
+          .findLast(({ type }) => type === 'members')
+          ?.members.filter(({ presenting }) => presenting)
+          .map(({ id }) => id)
+          .join() === seat.member,
+      'one seat presents',
+    );
+    assert.deepEqual(await scene(), before);
+    for (const client of [patHere, raeHere, raeThere, raeCame]) client.cut();
+  });
 });

@@ -42,6 +42,18 @@ static struct member *find(const struct room *room, const char *id, struct probl
     return NULL;
 }
 
+/* False with problem: the member presents another case of the meeting, to others there. */
+static bool may_have_control(struct room *room, const struct member *member, struct problem *problem)
+{
+    const struct room_meeting_callbacks *meeting = room->callbacks.meeting;
+    const size_t n = meeting && meeting->presents_case
+                         ? meeting->presents_case(room->callbacks.context, room, member->connection)
+                         : 0;
+    return n == 0 ||
+           problem_set(problem, PROBLEM_CONFLICT, "/member", "presents",
+                       "%s presents case %zu of this meeting, and nobody presents two at once", member->id, n);
+}
+
 /* ---- handlers --------------------------------------------------------------------------------------------------- */
 
 bool control_request(struct room *room, struct member *member, const struct message *message, struct problem *problem)
@@ -81,7 +93,7 @@ bool control_give(struct room *room, struct member *member, const struct message
         problem_below(problem, "/member");
         return false;
     }
-    return pass_on(room, other, WIRE_CONTROL_ACT_GIVEN, 0, problem);
+    return may_have_control(room, other, problem) && pass_on(room, other, WIRE_CONTROL_ACT_GIVEN, 0, problem);
 }
 
 bool control_refuse(struct room *room, struct member *member, const struct message *message, struct problem *problem)
@@ -114,7 +126,7 @@ bool control_take(struct room *room, struct member *member, const struct message
     if (room->control->is_locked)
         return problem_set(problem, PROBLEM_NOT_PRESENTER, "", "locked", "%s has locked control: request it",
                            presenter->id);
-    return pass_on(room, member, WIRE_CONTROL_ACT_TAKEN, input, problem);
+    return may_have_control(room, member, problem) && pass_on(room, member, WIRE_CONTROL_ACT_TAKEN, input, problem);
 }
 
 bool control_lock(struct room *room, struct member *member, const struct message *message, struct problem *problem)

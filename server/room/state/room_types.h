@@ -157,6 +157,9 @@ struct room_meeting_callbacks {
     bool (*go)(void *context, struct room *room, void *connection, struct problem *problem);
     /* Which case the room is in a meeting that has come to it. False: in none. */
     bool (*about)(void *context, const struct room *room, struct room_meeting_case *about);
+    /* The number of another case in whose room the user at this connection presents to others; 0: of none. NULL: as 0.
+     */
+    size_t (*presents_case)(void *context, const struct room *room, void *connection);
 };
 
 struct room_callbacks {
