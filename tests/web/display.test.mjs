@@ -240,6 +240,14 @@ describe('the page of a wall', { skip: missing && `${missing} is missing` }, () 
       'Reviewer 2',
     ])
       assert.ok(column.includes(words), `${words} in ${column}`);
+    const { slices } = (await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`)).json.image;
+    const inferior = { ...slices, axial: { ...slices.axial, position_mm: -12 } };
+    await patch({ image: { slices: inferior } });
+    await until(
+      () => text(wall, '.wall-column'),
+      (words) => words.includes('S −12.0 mm'), // as the page says it, and headers of panes
+    );
+    await patch({ image: { slices } });
     await ben.mouse.move(box.x + box.width * 0.41, box.y + box.height * 0.41); // who rests for long points no more
     await until(
       () => text(wall, '.wall-top'),

@@ -7,19 +7,13 @@ import { imageScales } from '../features/image/image_legend.js';
 import { ownRegions } from '../room/identity.js';
 import { isInSpace } from '../room/kinds.js';
 import { crosshair } from '../room/plan.js';
-import { letters } from '../pane/letters.js';
-import { number } from '../parts/format.js';
+import { position } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { variables } from '../parts/mount.js';
 import { say } from './words.js';
 
 const mostRegions = 9;
 const mostPeople = 8;
-const axes = [
-  [1, 0, 0],
-  [0, 1, 0],
-  [0, 0, 1],
-];
 
 const swatch = (color, kind = '') => html`<i class=${`wall-swatch ${kind}`} ${variables({ '--color': color })}></i>`;
 
@@ -72,10 +66,6 @@ function regions({ room }) {
   return html`<section><h2>${say.regions}</h2><ul>${shown.slice(0, more > 1 ? mostRegions : shown.length).map(({ id, name }) => html`<li>${swatch(scene.regions[id].color)}<span>${name}</span></li>`)}</ul>
     ${more > 1 ? html`<p>${say.others({ n: more })}</p>` : nothing}</section>`;
 }
-
-/** "L 24.9 P 38.4 S −64.9" */
-const position = (point) =>
-  point.map((value, axis) => `${letters(axes[axis].map((part) => part * (value < 0 ? -1 : 1)))} ${number(Math.abs(value), 1)}`).join('  ');
 
 function atCrosshair({ room, doses, probed }) {
   const scene = room.scene.value;
