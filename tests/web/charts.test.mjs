@@ -58,6 +58,25 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     assert.equal(drawer.height, 220);
     assert.deepEqual([drawer.x, drawer.width], [main.x, main.width]);
     assert.equal(tree.y + tree.height, drawer.y + drawer.height, 'the tree keeps its height');
+    await page.locator('.chart-profile .chart-foot').waitFor();
+    await page.locator('.chart-here b').waitFor();
+    for (const width of [1440, 1280]) {
+      await page.setViewportSize({ width, height: 900 });
+      const cut = await page.evaluate(() =>
+        [...document.querySelectorAll('.chart-foot > span, .chart-here')]
+          .filter((element) => {
+            const range = document.createRange();
+            range.selectNodeContents(element);
+            const part = element.closest('.chart-part').getBoundingClientRect();
+            const isOut = [...range.getClientRects()].some(
+              ({ left, right, bottom }) => left < part.left || right > part.right || bottom > part.bottom,
+            );
+            return isOut || element.scrollWidth > element.clientWidth + (element.clientWidth ? 0 : element.scrollWidth);
+          })
+          .map(({ textContent }) => textContent.trim()),
+      );
+      assert.deepEqual(cut, [], `words of the axes and the value at the crosshair at ${width}`);
+    }
     await page.keyboard.press('v');
     assert.equal(await page.locator('.chart-drawer').isVisible(), false);
     await page.context().close();

@@ -242,6 +242,14 @@ describe('around the panes', { skip: missing && `${missing} is not there` }, () 
     assert.ok(await menu.evaluate((element) => element.scrollWidth <= element.clientWidth), 'the keys are in the box');
     await page.keyboard.press('Escape');
     await page.setViewportSize({ width: 390, height: 844 });
+    await page.waitForFunction(() => {
+      const name = document.querySelector('[data-size="phone"] .plan-name h1 > span:first-child'); // plans are told apart by the ends of their names
+      return (
+        name?.textContent === 'Phantom: modified Snyder head' &&
+        name.scrollHeight <= name.clientHeight &&
+        name.scrollWidth <= name.clientWidth
+      );
+    });
     await page.getByRole('button', { name: 'Snapshot' }).click();
     await page.locator('.snapshots').waitFor();
     await page.waitForFunction(() => document.querySelector('.snapshots').getBoundingClientRect().left >= 0);
