@@ -30,6 +30,9 @@ enum key {
     TYPE,
     CHANNELS,
     HEADER_SIZE,
+    UNITS,
+    SLOPE,
+    INTERCEPT,
     DATA_FILE,
     N_KEYS
 };
@@ -52,6 +55,9 @@ static const char *const key_words[N_KEYS] = {
     "ElementType",
     "ElementNumberOfChannels",
     "HeaderSize",
+    "DistanceUnits",
+    "ElementToIntensityFunctionSlope",
+    "ElementToIntensityFunctionOffset",
     "ElementDataFile",
 };
 
@@ -238,6 +244,19 @@ static bool take_skip(struct reading *reading)
     return true;
 }
 
+/* Readers pass these over; where they say anything, lengths or values would be wrong by a factor. */
+static bool check_units(const struct reading *reading)
+{
+    const char *units = reading->values[UNITS];
+    double slope = 1, offset = 0;
+    if (reading->lines[UNITS] && units[0] && strcmp(units, "mm") != 0 && strcmp(units, "?") != 0)
+        return refuse(reading, UNITS, ERROR_UNSUPPORTED, "mm");
+    if (reading->lines[SLOPE] && (!numbers(reading, SLOPE, 1, &slope) || slope != 1))
+        return refuse(reading, SLOPE, ERROR_UNSUPPORTED, "1");
+    return !reading->lines[INTERCEPT] || (numbers(reading, INTERCEPT, 1, &offset) && offset == 0) ||
+           refuse(reading, INTERCEPT, ERROR_UNSUPPORTED, "0");
+}
+
 static bool take_values(struct reading *reading)
 {
     struct metaimage_header *header = reading->header;
@@ -261,7 +280,8 @@ static bool take_values(struct reading *reading)
         return false;
     if (!is_binary)
         return refuse(reading, BINARY, ERROR_UNSUPPORTED, "True");
-    if (!take_type(reading) || !take_grid(reading, (int)n_dims) || !take_data_file(reading) || !take_skip(reading))
+    if (!check_units(reading) || !take_type(reading) || !take_grid(reading, (int)n_dims) || !take_data_file(reading) ||
+        !take_skip(reading))
         return false;
     header->is_swapped = is_big || is_big_too;
     header->data_bytes = (uint64_t)grid_n_voxels(&header->grid) * raw_type_bytes(header->type);

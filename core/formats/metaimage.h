@@ -21,8 +21,8 @@ struct metaimage_header {
 
 /* Reads and checks a header; head holds the first bytes of the file, METAIMAGE_HEAD_BYTES are enough.
  *   name    of the file in the plan's folder: for error and report, and to find its data file; report may be NULL
- *   errors  ERROR_FORMAT, with the line; ERROR_UNSUPPORTED (several values a voxel, four dimensions, a list of files);
- *           ERROR_RANGE (geometry, a data file outside the folder); ERROR_LIMIT */
+ *   errors  ERROR_FORMAT, with the line; ERROR_UNSUPPORTED (several values a voxel, four dimensions, a list of files,
+ *           lengths not in mm); ERROR_RANGE (geometry, a data file outside the folder); ERROR_LIMIT */
 NODISCARD bool metaimage_parse_header(const uint8_t *head, size_t size, const char *name,
                                       struct metaimage_header *header, struct report *report, struct error *err);
 /* data: the whole file that holds the voxels, called data_name. Returns the volume, measured; one reference, the

@@ -369,25 +369,30 @@ static bool take_energy_bin(struct reading *reading, struct matrix *matrix, stru
     return true;
 }
 
+/* Results before this line have no errors behind it: those would be of other boxes. */
+static void end_matrix(struct matrix *matrix)
+{
+    matrix->across = -1;
+}
+
 static bool take_matrix_line(struct reading *reading, struct matrix *matrix)
 {
     static const char *const bins[] = { "X bin:", "Y bin:", "Z bin:" };
     struct tally_line line = reading->line;
+    bool is_total = tally_find(&line, "Total Energy Bin"), is_total_time = tally_find(&line, "Total Time Bin");
     for (int axis = 0; axis < 3; axis++)
-        if (tally_skip(&line, bins[axis]))
+        if (tally_skip(&line, bins[axis])) {
+            end_matrix(matrix);
             return take_bin(reading, matrix, axis, line);
-    if (tally_find(&line, "Total Energy Bin")) {
+        }
+    if (is_total || tally_skip(&line, "Energy Bin:")) {
+        end_matrix(matrix);
         matrix->upper_mev = NAN;
-        return true;
+        return is_total || take_energy_bin(reading, matrix, line);
     }
-    if (tally_find(&line, "Total Time Bin")) {
-        matrix->is_total_time = true;
-        return true;
-    }
-    if (tally_skip(&line, "Energy Bin:"))
-        return take_energy_bin(reading, matrix, line);
-    if (tally_find(&line, "Time Bin:")) {
-        matrix->is_total_time = false;
+    if (is_total_time || tally_find(&line, "Time Bin:")) {
+        end_matrix(matrix);
+        matrix->is_total_time = is_total_time;
         return true;
     }
     bool is_used = is_wanted(reading, matrix->upper_mev) && (reading->n_times <= 1 || matrix->is_total_time);

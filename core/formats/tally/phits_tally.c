@@ -29,6 +29,7 @@ struct reading {
     uint32_t at[3]; /* of the page, along the axes that it does not show */
     long energy;    /* of the page, from 1 */
     bool is_page;   /* a page has begun, and its boxes have not come yet */
+    bool is_of_all; /* the first column of the page's values is of all particles */
     bool *is_filled;
     size_t n_filled;
 };
@@ -223,6 +224,14 @@ static bool put(struct reading *reading, const uint32_t ijk[3], double value, do
     return true;
 }
 
+/* "#  x-lower  x-upper  all  r.err": a file of several particles has two columns for each. */
+static bool starts_with_all(struct tally_line line)
+{
+    char word[TALLY_WORD_SIZE];
+    bool is_found = tally_skip(&line, "-upper") && tally_word(&line, word);
+    return is_found && strcmp(word, "all") == 0;
+}
+
 /* Rows "lower upper value error" along the page's axis, up to an empty line. */
 static bool take_rows(struct reading *reading)
 {
@@ -231,13 +240,16 @@ static bool take_rows(struct reading *reading)
     uint32_t ijk[3] = { reading->at[0], reading->at[1], reading->at[2] };
     for (uint32_t i = 0; i < tally->size[axis]; i++) {
         struct tally_line line;
-        double numbers[4];
+        double numbers[4], more;
         if (!tally_next_line(&reading->text, &reading->line))
             return fail(reading, ERROR_FORMAT, "the file ends within a page");
         line = reading->line;
         for (int k = 0; k < 4; k++)
             if (!tally_number(&line, &numbers[k]))
                 return fail(reading, ERROR_FORMAT, "lower and upper bound, value and error expected");
+        if (!reading->is_of_all && tally_number(&line, &more))
+            return fail(reading, ERROR_UNSUPPORTED,
+                        "values of several particles; a file of one, or of their sum, is read");
         double at = (.5 * (numbers[0] + numbers[1]) - tally->low_cm[axis]) / tally->step_cm[axis] - .5;
         if (!(fabs(at - i) <= .3))
             return fail(reading, ERROR_FORMAT, "the row's bounds are not those of the next box");
@@ -326,6 +338,7 @@ static bool take_page_line(struct reading *reading, struct order *order)
     }
     if (!is_plane && tally_find(&line, "-lower") && tally_find(&line, "r.err")) {
         reading->is_page = false;
+        reading->is_of_all = starts_with_all(line);
         return take_rows(reading);
     }
     return true;

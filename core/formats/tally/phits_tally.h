@@ -2,7 +2,7 @@
 /* Reads what PHITS writes of [T-Deposit] and [T-Track] on a mesh xyz of linear steps: along an axis, or planes (2D-type
  * 1, 2, 3, 6 or 7), all pages together. Works on bytes in memory. Values are per particle of the source, in the unit
  * that the file names; x, y, z in cm. A file along an axis holds relative errors; those of planes lie in another file,
- * _err.out.
+ * _err.out. Of several particles the first column counts if it is of all, else the file is refused.
  *
  * source  PHITS user's manual, sections on tallies and on the format of ANGEL */
 #include "core/formats/tally/tally.h"

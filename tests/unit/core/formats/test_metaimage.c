@@ -175,6 +175,8 @@ static void byte_order_packing_and_skipped_bytes_are_as_the_header_says(void **s
         read_text(HEAD "ElementByteOrderMSB = True\nElementDataFile = Local\n", big, 8, RAW_IMAGE, &err),
         read_text(HEAD "CompressedData = True\nElementDataFile = LOCAL\n", packed, n_packed, RAW_IMAGE, &err),
         read_text(HEAD "HeaderSize = 4\nElementDataFile = LOCAL\n", behind, 12, RAW_IMAGE, &err),
+        read_text(HEAD "DistanceUnits = mm\nElementToIntensityFunctionSlope = 1\nElementDataFile = LOCAL\n", values, 8,
+                  RAW_IMAGE, &err),
         read_text(HEAD "HeaderSize = -1\nElementDataFile = LOCAL\n", behind, 12, RAW_IMAGE, &err),
     };
     for (size_t i = 0; i < sizeof volumes / sizeof *volumes; i++) {
@@ -213,6 +215,12 @@ static void a_header_that_is_wrong_is_refused_with_its_line(void **state)
     refuse(HEAD "ElementNumberOfChannels = 3\nElementDataFile = LOCAL\n", 24, ERROR_UNSUPPORTED,
            "line 4: ElementNumberOf");
     refuse(HEAD "BinaryData = False\nElementDataFile = LOCAL\n", 8, ERROR_UNSUPPORTED, "line 4: BinaryData");
+    refuse(HEAD "DistanceUnits = cm\nElementDataFile = LOCAL\n", 8, ERROR_UNSUPPORTED,
+           "line 4: DistanceUnits is 'cm', expected mm");
+    refuse(HEAD "ElementToIntensityFunctionSlope = 0.01\nElementDataFile = LOCAL\n", 8, ERROR_UNSUPPORTED,
+           "line 4: ElementToIntensityFunctionSlope is '0.01', expected 1");
+    refuse(HEAD "ElementToIntensityFunctionOffset = -1024\nElementDataFile = LOCAL\n", 8, ERROR_UNSUPPORTED,
+           "line 4: ElementToIntensityFunctionOffset is '-1024', expected 0");
     refuse(HEAD "CompressedData = perhaps\nElementDataFile = LOCAL\n", 8, ERROR_FORMAT, "True or False");
     refuse(HEAD "CompressedData = True\nElementDataFile = LOCAL\n", 8, ERROR_FORMAT, "it");
     refuse(HEAD "TransformMatrix = 1 0 0 0 1 0 0 0 0\nElementDataFile = LOCAL\n", 8, ERROR_RANGE, "it");

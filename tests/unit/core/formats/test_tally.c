@@ -171,6 +171,24 @@ static void a_mesh_tally_that_is_cut_or_changed_is_refused_with_the_line(void **
     refuse_mesh("Mesh Tally Number 4\nMesh Tally Number 14\n", ERROR_RANGE, "2 mesh tallies");
 }
 
+/* The errors behind another bin's line would lie in boxes of another axis, or of another energy. */
+static void errors_that_do_not_follow_their_matrix_are_refused(void **state)
+{
+    (void)state;
+#define MATRIX_HEAD \
+    " Mesh Tally Number 4\n X direction: 0 1 2\n Y direction: 0 1 2\n Z direction: 0 1 2\n Energy bin boundaries: 0 1\n" \
+    " Z bin: 0 - 1\n Tally Results:  X (across) by Y (down)\n 0.5 1.5\n 0.5 1 2\n 1.5 3 4\n"
+    static const char *const between[] = { "X bin: 0 - 1",          "Y bin: 1 - 2",     "Z bin: 1 - 2",
+                                           "Energy Bin: 0 - 1 MeV", "Total Energy Bin", "Time Bin: 0 - 1",
+                                           "Total Time Bin" };
+    for (size_t i = 0; i < sizeof between / sizeof *between; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "%s %s\n Relative Errors\n 0.5 1.5\n 0.5 .1 .1\n 1.5 .1 .1\n", MATRIX_HEAD,
+                 between[i]);
+        refuse_mesh(text, ERROR_FORMAT, "line 12: errors before their values");
+    }
+}
+
 /* ---- PHITS -------------------------------------------------------------------------------------------------------- */
 
 static bool read_phits(const char *name, struct tally *tally, struct error *err)
@@ -285,6 +303,14 @@ static void a_tally_of_phits_that_is_cut_or_changed_is_refused_with_the_line(voi
     refuse_phits(PHITS_HEAD " axis = x\n" PHITS_PAGE "0 1 5 .1\n", ERROR_FORMAT, "ends within a page");
     refuse_phits(PHITS_HEAD " axis = x\n" PHITS_PAGE "1 2 6 .1\n0 1 5 .1\n", ERROR_FORMAT, "line 18: the row's bounds");
     refuse_phits(PHITS_HEAD " axis = x\n" PHITS_PAGE "0 1 5 .1\n1 2 6\n", ERROR_FORMAT, "line 19: lower and upper");
+    refuse_phits(PHITS_HEAD " axis = x\n#newpage:\n#  x-lower  x-upper  neutron  r.err  photon  r.err\n"
+                            "0 1 5 .1 50 .1\n1 2 6 .1 60 .1\n",
+                 ERROR_UNSUPPORTED, "line 17: values of several particles");
+    const char *parts = PHITS_HEAD " axis = x\n#newpage:\n#  x-lower  x-upper  all  r.err  photon  r.err\n"
+                                   "0 1 5 .1 3 .1\n1 2 6 .1 4 .1\n";
+    assert_true(phits_tally_read((const uint8_t *)parts, strlen(parts), "it", &unsaid, &tally, &err));
+    assert_close(tally.values[1], 6, 0);
+    tally_finish(&tally);
     refuse_phits(PHITS_HEAD " axis = x\n#newpage:\n# no. = 1 iz = 2\n", ERROR_FORMAT, "line 16: the page's place");
     refuse_phits(PHITS_HEAD " axis = x\n#newpage:\n", ERROR_FORMAT, "0 of the mesh's 2 boxes");
     refuse_phits(PHITS_HEAD " axis = xy\n#newpage:\nhc: y = 1\n1 2\n", ERROR_UNSUPPORTED, "the order of its numbers");
@@ -406,6 +432,7 @@ int main(void)
         cmocka_unit_test(a_real_run_adds_up_over_its_energies),
         cmocka_unit_test(cylinders_are_refused_by_name),
         cmocka_unit_test(a_mesh_tally_that_is_cut_or_changed_is_refused_with_the_line),
+        cmocka_unit_test(errors_that_do_not_follow_their_matrix_are_refused),
         cmocka_unit_test(deposits_along_an_axis_have_the_sums_of_the_answers),
         cmocka_unit_test(a_plane_of_a_track_lies_as_its_order_says),
         cmocka_unit_test(a_tally_of_phits_that_is_cut_or_changed_is_refused_with_the_line),
