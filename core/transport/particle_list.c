@@ -6,6 +6,7 @@
 
 #include "core/base/mem.h"
 #include "core/transport/medium.h"
+#include "core/transport/photon_data.h"
 #include "core/transport/random.h"
 
 #define LEAST_COSINE 1e-3 /* with the beam's axis; below, a particle does not leave the aperture */
@@ -45,7 +46,7 @@ bool particle_frame_init(struct particle_frame *frame, const double origin_cm[3]
     return true;
 }
 
-enum fate { USED, BACKWARD, BESIDE };
+enum fate { USED, BACKWARD, BESIDE, SOFT };
 
 /* To the aperture plane, in the beam's own axes. */
 static enum fate place(const struct particle_frame *frame, const struct beam_particle *from, struct particle *to)
@@ -82,9 +83,12 @@ static bool place_all(const struct particle_frame *frame, const struct beam_part
         struct particle *to = &(*used)[weights->n_used];
         double weight = (double)from[i].weight;
         enum fate fate = place(frame, &from[i], to);
+        if (fate == USED && are_photons && (double)from[i].energy_mev < PHOTON_LOWEST_MEV)
+            fate = SOFT;
         weights->all += weight;
         weights->backward += fate == BACKWARD ? weight : 0;
         weights->beside += fate == BESIDE ? weight : 0;
+        weights->soft += fate == SOFT ? weight : 0;
         if (fate != USED || !(weight > 0))
             continue;
         if (!are_photons)

@@ -11,7 +11,10 @@ struct particle_frame {
 };
 /* Sums of the file's weights, by kind of particles. */
 struct particle_weights {
-    double all, backward, beside; /* against the beam or along its plane; beyond PARTICLE_FARTHEST_CM: both left out */
+    double all;
+    /* Left out: against the beam or along its plane; beyond PARTICLE_FARTHEST_CM; photons that simulations do not
+     * follow, below PHOTON_LOWEST_MEV. */
+    double backward, beside, soft;
     size_t n_used;
 };
 #define PARTICLE_FARTHEST_CM 30.

@@ -7,6 +7,7 @@
 #include "core/formats/mcpl.h"
 #include "core/formats/text.h"
 #include "core/transport/particle_list.h"
+#include "core/transport/photon_data.h"
 #include "server/cli/text.h"
 #include "server/cli/transport_parts.h"
 
@@ -113,6 +114,9 @@ static void print_kind(const char *word, size_t n, const struct particle_weights
     if (weights->backward + weights->beside > 0)
         printf("; left out: %.3g %% do not go the beam's way, %.3g %% pass beyond %g cm from the axis",
                100 * weights->backward / weights->all, 100 * weights->beside / weights->all, PARTICLE_FARTHEST_CM);
+    if (weights->soft > 0)
+        printf("; left out: %.3g %% are photons below %g MeV, which are not followed",
+               100 * weights->soft / weights->all, PHOTON_LOWEST_MEV);
     puts("");
 }
 

@@ -122,9 +122,12 @@ static void print_left_out(const struct region *region, const char *why)
     printf("  left out: %s\n", why);
 }
 
+enum { AIR_OF_REGION = 255 }; /* while regions are painted: air, where a region says so, and not for want of one */
+_Static_assert((int)AIR_OF_REGION > (int)MATERIAL_MAX, "it is no material's value");
+
 /* Gives a region's voxels its value: by label where the layer is on the grid, else by the place of each voxel.
  *
- *   is_bare_only  those without a material */
+ *   is_bare_only  those that no region has */
 static void paint(struct transport_scene *scene, const struct region_set *set, const struct region *region,
                   uint8_t value, bool is_bare_only)
 {
@@ -143,11 +146,11 @@ static void paint(struct transport_scene *scene, const struct region_set *set, c
             }
 }
 
-/* Value of a material, 0 of air; equal ones share it. -1: no room */
+/* Value of a material; equal ones share it. -1: no room */
 static int value_of(struct transport_scene *scene, const struct choice *choice, struct error *err)
 {
     if (choice->is_air)
-        return 0;
+        return AIR_OF_REGION;
     for (size_t i = 0; i < scene->n_materials; i++)
         if (memcmp(&scene->materials[i], &choice->material, sizeof choice->material) == 0)
             return (int)(i + 1);
@@ -209,6 +212,9 @@ bool transport_scene_init(struct transport_scene *scene, const struct plan *plan
                 return false;
             }
         }
+    size_t n = grid_n_voxels(scene->grid);
+    for (size_t i = 0; i < n; i++)
+        scene->voxels[i] = scene->voxels[i] == AIR_OF_REGION ? 0 : scene->voxels[i];
     return true;
 }
 

@@ -251,6 +251,31 @@ describe('beamroom transport', () => {
     }
   });
 
+  it('leaves air that a region says is air where a ring of another file lies over it', () => {
+    const [dir, out] = ['ring over air', 'ring over air out'].map((name) => join(folder, name));
+    mkdirSync(dir);
+    const labels = gunzipSync(readFileSync(join(plan, 'labels.nii.gz')));
+    const ring = Buffer.from(labels);
+    for (let at = 352; at < ring.length; at++) ring[at] = ring[at] >= 3 ? 1 : 0;
+    writeFileSync(join(dir, 'labels.nii.gz'), gzipSync(labels, { level: 1 }));
+    writeFileSync(join(dir, 'ring.nii.gz'), gzipSync(ring, { level: 1 }));
+    writeFileSync(join(dir, 'labels.json'), readFileSync(join(plan, 'labels.json'), 'utf8').replace('"target"', '"Airway"'));
+    writeFileSync(join(dir, 'ring.json'), JSON.stringify({ labels: [{ value: 1, name: 'Ring' }] }));
+    const { format, version, beams, regions } = JSON.parse(readFileSync(join(plan, 'plan.json'), 'utf8'));
+    const hierarchy = { scalp: ['cranium'], cranium: ['brain'], brain: ['Airway', 'Ring'], Airway: ['tumour'] };
+    const doses = [[], [{ path: 'ring.nii.gz', names: 'ring.json' }]].map((more) => {
+      const inside = more.length ? hierarchy : { ...hierarchy, brain: ['Airway'] };
+      writeFileSync(join(dir, 'plan.json'), JSON.stringify({ format, version, beams, regions: [...regions, ...more], hierarchy: inside }));
+      rmSync(out, { recursive: true, force: true });
+      const { status, stdout, stderr } = beamroom('transport', dir, '-o', out, '--histories', '2000');
+      assert.equal(status, 0, stderr);
+      assert.match(stdout, /^ {2}Airway +air \(by its name\)$/m);
+      assert.equal(/^ {2}Ring +no material of its own/m.test(stdout), more.length > 0);
+      return ['boron', 'valid'].map((quantity) => readVolume(out, 'simulated-here', quantity).bytes);
+    });
+    for (const i of [0, 1]) assert.ok(doses[0][i].equals(doses[1][i]), 'a ring changes no material');
+  });
+
   // seraMC's dose of its sample head, in its unit and cells; 5 % on the sum, and 15 % cell by cell: twice the noise of 40,000 histories.
   it("gives seraMC's dose of its sample head", { skip: !realData }, () => {
     const [head, out] = [join(realData, 'sera-head'), join(folder, 'as seraMC')];

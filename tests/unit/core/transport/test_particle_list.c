@@ -162,6 +162,24 @@ static void what_does_not_go_through_the_aperture_is_left_out_and_counted(void *
     beam_particles_finish(&particles);
 }
 
+/* A photon of no energy is in the file of a program that lists what it killed; it would scatter for ever. */
+static void photons_too_soft_to_be_followed_are_left_out_and_counted(void **state)
+{
+    (void)state;
+    struct beam_particles particles = make(16, 64);
+    for (size_t i = 0; i < 64; i++)
+        particles.photons[i].energy_mev = i % 4 == 0 ? 0 : i % 4 == 1 ? .0299F : .0301F;
+    struct listed listed = list(&particles, 0, 1);
+    assert_close(listed.photons.soft, 32, 1e-9);
+    assert_int_equal(listed.photons.n_used, 32);
+    assert_near(listed.space.photons.per_unit, 320, 1e-9);
+    for (size_t i = 0; i < N_LIST; i++)
+        assert_true(listed.space.photons.particles[i].energy > .03F);
+    assert_close(listed.neutrons.soft, 0, 0);
+    phase_space_finish(&listed.space);
+    beam_particles_finish(&particles);
+}
+
 static void axes_without_length_or_parallel_ones_are_refused(void **state)
 {
     (void)state;
@@ -182,6 +200,7 @@ int main(void)
         cmocka_unit_test(a_list_stands_for_as_many_particles_as_the_weights_say),
         cmocka_unit_test(lanes_share_no_particles),
         cmocka_unit_test(what_does_not_go_through_the_aperture_is_left_out_and_counted),
+        cmocka_unit_test(photons_too_soft_to_be_followed_are_left_out_and_counted),
         cmocka_unit_test(axes_without_length_or_parallel_ones_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
