@@ -9,7 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/net/can_write.h"
-#include "server/net/keep_audit.h"
+#include "server/net/keep_change.h"
 #include "server/net/schedule.h"
 #include "server/wire/random.h"
 
@@ -314,27 +314,9 @@ static char *audit_text(const struct meeting *meeting, const struct net_meeting_
     cJSON_AddStringToObject(detail, "what", act->what);
     if (act->case_id[0])
         cJSON_AddStringToObject(detail, "case", act->case_id);
-    char *words = json_print(detail);
-    const struct room_audit row = { .time_ms = clock_wall_ms(),
-                                    .action = "meeting",
-                                    .member = "",
-                                    .name = act->name ? act->name : act->who->name,
-                                    .role = "",
-                                    .address = act->address,
-                                    .user = act->who->user,
-                                    .source = identity_source_word(act->who->source),
-                                    .session = act->who->session,
-                                    .detail = words ? words : "{}",
-                                    .result = "done",
-                                    .before = -1,
-                                    .after = -1 };
     const struct meeting_case *of = meeting_find(meeting, act->case_id);
-    cJSON *json = keep_audit_describe(of ? of->room : "", of ? of->plan : "", &row);
-    char *text = words ? json_print(json) : NULL; /* without its words the row would not say what was done */
-    cJSON_Delete(json);
-    cJSON_Delete(detail);
-    free(words);
-    return text;
+    const struct keep_change_by by = { act->who, act->name ? act->name : act->who->name, act->address };
+    return keep_change_row(of ? of->room : "", of ? of->plan : "", "meeting", detail, &by);
 }
 
 /* The write of a meeting, or of its end; NULL: no memory. */
@@ -344,16 +326,7 @@ static struct store_room *make_write(const struct meeting *meeting, bool deletes
     write->meeting = deletes ? mem_new(sizeof *write->meeting) : meeting_write(meeting);
     if (deletes)
         mem_put_text(write->meeting->id, sizeof write->meeting->id, meeting->id);
-    write->audit = audit ? mem_array(1, sizeof write->audit[0], 1 << 20, NULL) : NULL;
-    if (write->audit)
-        write->audit[write->n_audit++] = audit;
-    else
-        free(audit);
-    write->is_prompt = audit != NULL;
-    if (write->meeting && (!audit || write->audit))
-        return write;
-    store_room_free(write);
-    return NULL;
+    return keep_change_with(write, write->meeting != NULL, audit);
 }
 
 /* The change counts. */
@@ -389,13 +362,11 @@ bool net_meeting_commit(struct net *net, struct meeting *changed, const struct n
     }
     char *audit = net->store ? audit_text(changed, act) : NULL;
     struct store_room *write = audit ? make_write(changed, act->deletes, audit) : NULL;
-    const uint64_t ticket = net->n_tickets + 1;
-    if (net->store && (!write || !store_write(net->store, write, ticket))) {
-        store_room_free(write);
+    if (net->store && !keep_change_write(net, write, &kept->ticket, problem)) {
         meeting_free(changed);
         if (is_new)
             drop(all, kept);
-        return keep_refuse(false, problem);
+        return false;
     }
     kept->done = done;
     kept->context = context;
@@ -404,12 +375,8 @@ bool net_meeting_commit(struct net *net, struct meeting *changed, const struct n
         meeting_free(changed);
         kept->pending = NULL;
     }
-    if (net->store) {
-        net->n_tickets = kept->ticket = ticket;
-        net->n_audit_waiting++;
-    } else {
+    if (!net->store)
         take_over(net, kept);
-    }
     return true;
 }
 
@@ -418,20 +385,19 @@ bool meetings_written(struct net *net, const struct store_answer *answer)
     struct problem problem;
     for (size_t i = 0; net->meetings && i < net->meetings->n; i++) {
         struct kept_meeting *kept = net->meetings->list[i];
-        if (!kept->ticket || kept->ticket != answer->ticket)
+        const enum keep_change change = keep_change_answer(&kept->ticket, answer, &problem);
+        if (change == KEEP_CHANGE_OTHER)
             continue;
-        if (answer->error.code == ERROR_NONE) {
+        if (change == KEEP_CHANGE_WRITTEN) {
             take_over(net, kept);
             return true;
         }
         net_meeting_done *done = kept->done;
         void *context = kept->context;
-        kept->ticket = 0;
         meeting_free(kept->pending);
         kept->pending = NULL;
         if (!kept->meeting)
             drop(net->meetings, kept);
-        (void)keep_refuse(answer->error.code == ERROR_LIMIT, &problem);
         done(context, NULL, &problem);
         return true;
     }

@@ -8,7 +8,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/net/can_write.h"
-#include "server/net/keep_audit.h"
+#include "server/net/keep_change.h"
 #include "server/net/schedule.h"
 
 enum { STATEMENTS_PAUSE_MS = 500 };
@@ -116,32 +116,6 @@ static cJSON *audit_detail(const cJSON *statement, const char *what)
     return detail;
 }
 
-/* by: who says it, as people read it. */
-static char *audit_text(const char *plan_id, cJSON *detail, const struct identity *who, const char *by,
-                        const char *address)
-{
-    char *words = json_print(detail);
-    const struct room_audit row = { .time_ms = clock_wall_ms(),
-                                    .action = "statement",
-                                    .member = "",
-                                    .name = by,
-                                    .role = "",
-                                    .address = address,
-                                    .user = who->user,
-                                    .source = identity_source_word(who->source),
-                                    .session = who->session,
-                                    .detail = words ? words : "{}",
-                                    .result = "done",
-                                    .before = -1,
-                                    .after = -1 };
-    cJSON *json = keep_audit_describe("", plan_id, &row);
-    char *text = json_print(json);
-    cJSON_Delete(json);
-    cJSON_Delete(detail);
-    free(words);
-    return text;
-}
-
 /* statement NULL: it is deleted. audit: NULL, or taken. NULL: no memory. */
 static struct store_room *make_write(const char *plan_id, const cJSON *statement, char *audit)
 {
@@ -149,16 +123,7 @@ static struct store_room *make_write(const char *plan_id, const cJSON *statement
     write->statement = mem_new(sizeof *write->statement);
     mem_put_text(write->statement->plan, sizeof write->statement->plan, plan_id);
     write->statement->body = statement ? json_print(statement) : NULL;
-    write->audit = audit ? mem_array(1, sizeof write->audit[0], 1 << 20, NULL) : NULL;
-    if (write->audit)
-        write->audit[write->n_audit++] = audit;
-    else
-        free(audit);
-    write->is_prompt = audit != NULL;
-    if ((!statement || write->statement->body) && (!audit || write->audit))
-        return write;
-    store_room_free(write);
-    return NULL;
+    return keep_change_with(write, !statement || write->statement->body, audit);
 }
 
 static void forget(struct net *net, const char *plan_id)
@@ -263,22 +228,18 @@ bool net_statement_put(struct net *net, const char *plan_id, cJSON *statement, c
         return false;
     }
     cJSON *detail = audit_detail(statement ? statement : kept->now, statement ? "made" : "withdrawn");
-    char *audit = audit_text(plan_id, detail, who, by, address);
+    const struct keep_change_by say = { who, by, address };
+    char *audit = keep_change_row("", plan_id, "statement", detail, &say);
     struct store_room *write = audit && net->store ? make_write(kept->plan, statement, audit) : NULL;
-    const uint64_t ticket = net->n_tickets + 1;
-    if (net->store && (!write || !store_write(net->store, write, ticket))) {
-        store_room_free(write);
+    if (net->store && !keep_change_write(net, write, &kept->ticket, problem)) {
         cJSON_Delete(statement);
         drop_if_empty(net, kept);
-        return keep_refuse(false, problem);
+        return false;
     }
     kept->pending = statement;
     kept->done = done;
     kept->context = context;
-    if (net->store) {
-        net->n_tickets = kept->ticket = ticket;
-        net->n_audit_waiting++;
-    } else {
+    if (!net->store) {
         free(audit);
         take_over(net, kept);
     }
@@ -290,25 +251,22 @@ bool statements_written(struct net *net, const struct store_answer *answer)
     struct problem problem;
     for (size_t i = 0; net->statements && i < net->statements->n; i++) {
         struct kept_statement *kept = &net->statements->list[i];
-        if (!kept->ticket || kept->ticket != answer->ticket)
+        const enum keep_change change = keep_change_answer(&kept->ticket, answer, &problem);
+        if (change == KEEP_CHANGE_OTHER)
             continue;
-        if (kept->is_forgotten) {
-            give_up(net, kept);
-            return true;
-        }
-        if (answer->error.code == ERROR_NONE) {
-            take_over(net, kept);
-            return true;
-        }
         net_statement_done *done = kept->done;
         void *context = kept->context;
-        kept->ticket = 0;
-        cJSON_Delete(kept->pending);
-        kept->pending = NULL;
-        drop_if_empty(net, kept);
-        (void)keep_refuse(answer->error.code == ERROR_LIMIT, &problem);
-        if (done)
-            done(context, &problem);
+        if (kept->is_forgotten) {
+            give_up(net, kept);
+        } else if (change == KEEP_CHANGE_WRITTEN) {
+            take_over(net, kept);
+        } else {
+            cJSON_Delete(kept->pending);
+            kept->pending = NULL;
+            drop_if_empty(net, kept);
+            if (done)
+                done(context, &problem);
+        }
         return true;
     }
     return false;
