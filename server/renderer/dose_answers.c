@@ -65,9 +65,11 @@ static void add_parts(cJSON *json, const struct snapshot *snapshot)
     const struct scene_dose_style *style = &snapshot->scene.dose;
     cJSON *parts = cJSON_AddArrayToObject(json, "parts");
     for (size_t i = 0; i <= style->n_sum; i++) {
-        cJSON *part = cJSON_CreateObject();
         double factor = i == 0 ? style->factor : style->sum[i - 1].value.factor;
         int dose = i == 0 ? snapshot->dose : dose_index_of(snapshot->plan, style->sum[i - 1].id);
+        if (i > 0 && dose == snapshot->dose) /* chosen by a view of a scene that adds it: it counts once */
+            continue;
+        cJSON *part = cJSON_CreateObject();
         struct fit_use use = dose < 0 ? (struct fit_use){ .state = FIT_NOT_USED }
                              : i == 0 ? snapshot->fits.doses[dose]
                                       : dose_part_use(snapshot, (size_t)dose, factor);

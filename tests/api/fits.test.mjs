@@ -390,6 +390,25 @@ test('where each beam has a dose and nothing has the whole plan, a new room show
     return [Math.round(value * 1e6) / 1e6, name, per];
   };
   assert.deepEqual(await at(), [Math.round(2 * expected * 1e6) / 1e6, 'Sum of the doses of all 2 beams', '']);
+  /** The answer about a dose that a view alone chooses, while the scene goes on to add that of beam 2: value, name, per, parts. */
+  const chosen = async (id, of = 'dose/probe?x=14&y=14&z=9') => {
+    const { value, name, per, parts } = await ask(`${of}&view=${encodeURIComponent(JSON.stringify({ override: { dose: { id } } }))}`);
+    return [value && Math.round(value * 1e6) / 1e6, name, per, parts.map((part) => [part.id, part.used])];
+  };
+  const once = Math.round(expected * 1e6) / 1e6;
+  const [, second, third] = doses;
+  assert.deepEqual(await chosen(second.id), [once, second.name, 'beam 2 of 2', [[second.id, true]]]); // the dose shown counts once
+  assert.deepEqual((await chosen(second.id, 'dvh?bins=1')).slice(1), [second.name, 'beam 2 of 2', [[second.id, true]]]);
+  const ofThird = [
+    once,
+    third.name,
+    'fraction',
+    [
+      [third.id, true],
+      [second.id, false],
+    ],
+  ]; // prettier-ignore
+  assert.deepEqual(await chosen(third.id), ofThird);
   assert.equal((await patch({ dose: { sum: { [doses[1].id]: null } } })).status, 200);
   assert.deepEqual(await at(), [Math.round(expected * 1e6) / 1e6, doses[0].name, 'beam 1 of 2']);
   assert.equal((await patch({ dose: { id: doses[2].id } })).status, 200);
