@@ -217,6 +217,7 @@ $(B)/fuzz/fuzz_plan_parts: $(call obj,$(addprefix tests/unit/,data_folder.c made
 $(B)/fuzz/fuzz_plan_parts: private CORE_LIBS += -lcmocka
 $(B)/unit/test_unpack: | $(B)/beamroom-render
 $(B)/unit/test_digest: $(call obj,server/renderer/digest.c)
+$(B)/unit/test_loader: $(call obj,$(addprefix server/renderer/,digest.c inbox.c loader.c profile_line.c question.c) $(wildcard server/renderer/*answers.c))
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: $(call obj,$(UNPACK_SRC))
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: private CORE_LIBS += $(UNPACK_LIBS)
 

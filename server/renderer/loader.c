@@ -21,7 +21,7 @@
 enum {
     PROGRESS_EVERY_US = 50000,
     BUILD_AHEAD_US = 300000,  /* after that a first picture is drawn, whatever is built */
-    WORTH_KEEPING_US = 50000, /* a plan that took longer to open is kept in the cache */
+    WORTH_KEEPING_US = 50000, /* the default of loader_options.worth_keeping_us */
     MAX_QUESTIONS = 256,
     MAX_WAITING_REQUESTS = 2 * PIPELINE_MAX_WAITING
 };
@@ -31,6 +31,7 @@ struct loader {
     uint64_t max_bytes;
     bool hides_folder;
     struct packet_statement *statement; /* NULL: none */
+    int64_t worth_keeping_us;
     struct inbox *inbox;
     atomic_bool cancel;
     pthread_t load_thread, quick_thread, shapes_thread;
@@ -142,7 +143,7 @@ static void build_ahead(struct loader *loader)
 static void store_in_cache(const struct loader *loader, const struct plan *plan, const struct plan_sources *sources)
 {
     struct error err = { 0 };
-    if (!loader->cache_folder || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
+    if (!loader->cache_folder || plan->load_us < loader->worth_keeping_us || atomic_load(&loader->cancel))
         return;
     if (!plan_cache_store(plan, sources, loader->cache_folder, &err))
         log_warn("the opened plan is not kept: %s", err.text);
@@ -296,6 +297,7 @@ struct loader *loader_create(const struct loader_options *options, struct inbox 
     loader->max_bytes = options->max_bytes;
     loader->hides_folder = options->hides_folder;
     loader->cache_folder = options->cache_folder ? mem_copy_text(options->cache_folder) : NULL;
+    loader->worth_keeping_us = options->worth_keeping_us ? options->worth_keeping_us : WORTH_KEEPING_US;
     if (options->statement) {
         loader->statement = mem_new(sizeof *loader->statement);
         *loader->statement = *options->statement;

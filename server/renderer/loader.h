@@ -13,6 +13,7 @@ struct loader_options {
     const char *cache_folder;                 /* as plan_load */
     bool hides_folder;                        /* a plan that is called by its folder is called by its id instead */
     const struct packet_statement *statement; /* NULL: nobody has stated whom the plan is of */
+    int64_t worth_keeping_us; /* a plan that took longer to open is kept in the cache; 0: the default. For tests */
 };
 NODISCARD struct loader *loader_create(const struct loader_options *options, struct inbox *inbox, struct error *err);
 /* After LOADED. Answered by an event ANSWER with the same id. Takes question. False: too many wait. */

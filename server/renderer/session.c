@@ -299,9 +299,13 @@ static bool start(struct session *session, struct error *err)
     session->pipeline = pipeline_create(options->back_end, options->is_stub, &callbacks, err);
     if (!session->pipeline)
         return false;
-    struct loader_options load = { options->plan_folder,  options->plan_id,
-                                   options->max_bytes,    options->cache,
-                                   options->hides_folder, options->awaits_statement ? &statement : NULL };
+    struct loader_options load = { options->plan_folder,
+                                   options->plan_id,
+                                   options->max_bytes,
+                                   options->cache,
+                                   options->hides_folder,
+                                   options->awaits_statement ? &statement : NULL,
+                                   0 };
     session->loader = loader_create(&load, session->inbox, err);
     if (!session->loader)
         return false;
