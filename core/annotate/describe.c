@@ -16,7 +16,7 @@
 #include "core/plan/identity.h"
 #include "core/render/visible/visible.h"
 
-enum { MAX_OTHER_ITEMS = 96 }; /* beside regions */
+enum { MAX_OTHER_ITEMS = 97 }; /* beside regions */
 
 void annotate_date(int64_t unix_s, char date[ANNOTATE_DATE_SIZE])
 {
@@ -363,13 +363,16 @@ static void add_origin(struct annotations *annotations, const struct snapshot *s
 
 static void add_patient(struct annotations *annotations, const struct plan *plan)
 {
-    char masked[IDENTITY_MASK_SIZE];
+    char masked[IDENTITY_MASK_SIZE], day[WORDS_DAY_SIZE];
     const int shown = plan_shown_patient(plan);
     if (shown < 0)
         return;
     identity_mask(&plan->patients[shown], masked);
     add_words(annotations, ANNOTATION_TITLE, masked);
     annotations->patient = annotations->n_items;
+    if (plan->statement.kind == STATEMENT_IDENTITY && plan->statement.state == STATEMENT_USED)
+        (void)snprintf(annotation_add(annotations, ANNOTATION_TITLE)->text, ANNOTATION_TEXT_SIZE,
+                       "stated by %.163s, %s", plan->statement.by, words_day(plan->statement.time_ms, day));
 }
 
 void annotations_name_patient(struct annotations *annotations, const struct plan *plan)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <time.h>
 
 static const char minus[] = "\u2212";
 
@@ -30,6 +31,18 @@ void words_significant(char text[40], double value)
         (void)snprintf(text, 40, "%s%s", value < 0 ? minus : "", rounded);
     else
         words_number(text, value, size < 2 ? 2 - size : 0);
+}
+
+const char *words_day(int64_t ms, char text[WORDS_DAY_SIZE])
+{
+    static const char *const months[] = { "Jan", "Feb", "Mar", "Apr", "May", "Jun",
+                                          "Jul", "Aug", "Sep", "Oct", "Nov", "Dec" };
+    const time_t seconds = (time_t)(ms / 1000);
+    struct tm utc;
+    text[0] = 0;
+    if (ms >= 0 && gmtime_r(&seconds, &utc) && utc.tm_year < 8100)
+        (void)snprintf(text, WORDS_DAY_SIZE, "%d %s %d UTC", utc.tm_mday, months[utc.tm_mon], utc.tm_year + 1900);
+    return text;
 }
 
 /* ---- planes ----------------------------------------------------------------------------------------------------- */

@@ -10,6 +10,9 @@ void words_number(char text[40], double value, int digits);
 /* Three significant figures: "0.0447", "10.0"; before the point all figures stay. As "1.23e+10" below 0.0001 and from
  * ten million on. */
 void words_significant(char text[40], double value);
+/* The day of a time in ms since 1970: "27 Nov 2026 UTC"; "" of one that no calendar has. Returns text. */
+enum { WORDS_DAY_SIZE = 24 };
+const char *words_day(int64_t ms, char text[WORDS_DAY_SIZE]);
 /* "S 34.0 mm": where a plane square to the patient cuts its axis. Of another one "through L 1.0  P 2.0  S 3.0 mm"; the
  * point is the one that the scene gives of an oblique plane. */
 void words_plane(char text[WORDS_SIZE], const struct scene *scene, const struct plane *plane);

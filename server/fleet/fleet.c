@@ -182,8 +182,23 @@ size_t fleet_n_plans(const struct fleet *fleet)
     return fleet->n_plans;
 }
 
+/* The person's statement that names the plan's patient: the one that was used, of the same files, and not withdrawn
+ * since. NULL: there is none. */
+static const cJSON *stated_on(const struct fleet *fleet, const struct plan_entry *plan)
+{
+    const bool is_of_files = plan->document || plan->stated.fingerprint == plan->fingerprint;
+    if (!plan->stated.masked[0] || plan->shown.masked[0] || plan->is_phantom || !is_of_files ||
+        !fleet->options.statement)
+        return NULL;
+    const cJSON *said = fleet->options.statement(fleet->options.context, plan->id);
+    const bool counts =
+        json_number(said, "withdrawn_ms", 0) <= 0 && (int64_t)json_number(said, "time_ms", -1) == plan->stated.time_ms;
+    return counts && json_text(said, "by") ? said : NULL;
+}
+
 static void describe(const struct fleet *fleet, const struct plan_entry *plan, struct fleet_plan *out)
 {
+    const cJSON *said = stated_on(fleet, plan);
     bool has_problem =
         plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_RESTARTING;
     *out = (struct fleet_plan){
@@ -194,6 +209,9 @@ static void describe(const struct fleet *fleet, const struct plan_entry *plan, s
         .is_phantom = plan->is_phantom,
         .patient = plan->shown.masked,
         .patient_id = plan->shown.id,
+        .stated_patient = said ? plan->stated.masked : "",
+        .stated_by = said ? json_text(said, "by") : "",
+        .stated_ms = said ? plan->stated.time_ms : 0,
         .label = plan->shown.label,
         .date = plan->shown.date,
         .approval = plan->shown.approval,

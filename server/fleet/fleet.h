@@ -73,7 +73,7 @@ struct fleet_options {
     void (*changed)(void *context, const char *plan_id);
     /* A person's statement of whom the plan is of: {kind, revision, key, patients, by, time_ms, words, name, id,
      * birth_date, withdrawn_ms}, borrowed for the call; NULL, also for the function: nothing. On the net thread, when a
-     * renderer is started. */
+     * renderer is started, and when a plan of which it counts is described. */
     const cJSON *(*statement)(void *context, const char *plan_id);
     void *context;
 };
@@ -94,6 +94,10 @@ struct fleet_plan {
     /* of the treatment plan and the patient that are shown first, "": the files name none, or were not looked at yet;
      * patient is masked, patient_id is never told to anybody: what people type is compared with it */
     const char *patient, *patient_id, *label, *date, *approval;
+    /* the patient that a person has stated where the files name none, masked, and who did so; "": nobody, or it is not
+     * known to count of these files, as before the plan was first read */
+    const char *stated_patient, *stated_by;
+    int64_t stated_ms;
     int n_patients, n_treatment_plans;
     bool is_phantom, is_uploaded;
     bool has_plan_file; /* the folder has a plan.json */

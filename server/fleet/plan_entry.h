@@ -28,6 +28,11 @@ struct plan_entry {
         char masked[64], id[130], label[65], date[9], approval[17];
         int n_patients, n_treatment_plans;
     } shown;
+    struct { /* the patient of a person's statement that the document used last; masked "": it used none */
+        char masked[64];
+        int64_t time_ms;
+        uint64_t fingerprint; /* of the folder then */
+    } stated;
     bool is_phantom;
     bool has_plan_file;
     enum fleet_state state;

@@ -78,6 +78,20 @@ static bool images_are_valid(const cJSON *document)
     return true;
 }
 
+/* Keeps whom a person has stated the plan to be of: the list of plans names the patient after it is closed, too. */
+static void keep_stated(struct plan_entry *plan)
+{
+    const cJSON *statement = cJSON_GetObjectItemCaseSensitive(plan->document, "statement"),
+                *patients = cJSON_GetObjectItemCaseSensitive(plan->document, "patients");
+    const char *kind = json_text(statement, "kind"), *state = json_text(statement, "state");
+    plan->stated.masked[0] = 0;
+    if (!kind || !state || strcmp(kind, "identity") != 0 || strcmp(state, "used") != 0)
+        return;
+    json_put_text(plan->stated.masked, sizeof plan->stated.masked, cJSON_GetArrayItem(patients, 0), "masked");
+    plan->stated.time_ms = (int64_t)json_number(statement, "time_ms", 0);
+    plan->stated.fingerprint = plan->fingerprint;
+}
+
 static bool ready_packet(struct fleet *fleet, struct plan_entry *plan, struct packet *packet)
 {
     const struct packet_ready *ready = &packet->ready;
@@ -92,6 +106,7 @@ static bool ready_packet(struct fleet *fleet, struct plan_entry *plan, struct pa
     plan_entry_forget_documents(plan);
     plan->document = packet_take_document(packet, ready->plan);
     plan->default_scene = packet_take_document(packet, ready->scene);
+    keep_stated(plan);
     mem_put_text(plan->confined, sizeof plan->confined, ready->confined);
     mem_put_text(plan->seen, sizeof plan->seen, ready->patients);
     plan->load_ms = ready->load_ms;

@@ -144,7 +144,8 @@ static bool may_name(const struct api *api, const struct call *call, const struc
 static bool is_patient(const struct api *api, const struct call *call, const struct fleet_plan *plan, const char *text)
 {
     const cJSON *patient;
-    bool is_named = has_text(plan->patient, text) || ends_as(text, plan->patient);
+    bool is_named = has_text(plan->patient, text) || ends_as(text, plan->patient) ||
+                    has_text(plan->stated_patient, text) || ends_as(text, plan->stated_patient);
     cJSON_ArrayForEach(patient, cJSON_GetObjectItemCaseSensitive(plan->document, "patients"))
     {
         is_named = is_named || has_text(json_text(patient, "masked"), text);

@@ -8,13 +8,26 @@
 #include "server/http/api_queries.h"
 #include "server/wire/sentence_json.h"
 
+/* Adds the person who has stated the patient where the files name none; else null. */
+static void add_stated(cJSON *json, const struct fleet_plan *plan)
+{
+    if (!plan->stated_by[0]) {
+        cJSON_AddNullToObject(json, "stated");
+        return;
+    }
+    cJSON *stated = cJSON_AddObjectToObject(json, "stated");
+    cJSON_AddStringToObject(stated, "by", plan->stated_by);
+    cJSON_AddNumberToObject(stated, "time_ms", (double)plan->stated_ms);
+}
+
 cJSON *api_plan_head(const struct fleet_plan *plan)
 {
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "id", plan->id);
     cJSON_AddStringToObject(json, "name", plan->name);
     cJSON_AddStringToObject(json, "note", plan->note);
-    cJSON_AddStringToObject(json, "patient", plan->patient);
+    cJSON_AddStringToObject(json, "patient", plan->stated_by[0] ? plan->stated_patient : plan->patient);
+    add_stated(json, plan);
     cJSON_AddNumberToObject(json, "n_patients", plan->n_patients);
     cJSON_AddStringToObject(json, "label", plan->label);
     cJSON_AddStringToObject(json, "date", plan->date);

@@ -131,6 +131,25 @@ test('who the patient is that the files do not name is stated, told in full by /
     full.map(({ name, id, birth_date }) => ({ name, id, birth_date })),
     [ottilie],
   ); // prettier-ignore
+  const { by, time_ms } = now.statement;
+  const listed = async () => {
+    const { patient, stated } = (await call(`${api}/plans`)).json.plans.find(({ id }) => id === 'nameless');
+    return [patient, stated];
+  };
+  const asStated = ['O. M. …327', { by, time_ms }];
+  assert.deepEqual(await listed(), asStated);
+  assert.equal((await call(`${api}/plans/nameless/close`, 'POST', {})).status, 204);
+  assert.deepEqual(await listed(), asStated); // as it was read last
+  assert.deepEqual(
+    (await call(`${api}/plans/search`, 'POST', { text: 'o. m.' })).json.plans.map(({ id, stated }) => [id, stated]),
+    [['nameless', { by, time_ms }]],
+  );
+  assert.equal((await call(`${api}/plans/nameless/statement`, 'DELETE')).status, 204); // while nobody has it open
+  assert.deepEqual(await listed(), ['', null]);
+  assert.equal((await openPlan(daemon.url, 'nameless')).state, 'done');
+  assert.equal((await state('nameless', { kind: 'identity', ...ottilie })).status, 204);
+  await loaded('nameless', ({ statement }) => statement?.state === 'used');
+  assert.equal((await listed())[0], 'O. M. …327');
   const rows = await audit('made');
   for (const text of [JSON.stringify(now), JSON.stringify(rows), daemon.log(), JSON.stringify((await call(`${api}/plans`)).json)])
     for (const secret of secrets) assert.ok(!text.includes(secret), secret);
@@ -139,6 +158,7 @@ test('who the patient is that the files do not name is stated, told in full by /
   assert.equal((await openPlan(daemon.url, 'nameless')).state, 'done');
   const named = await loaded('nameless', ({ statement }) => statement);
   assert.equal(named.statement.state, 'contradicted');
+  await until(listed, ([patient, stated]) => patient === 'Q. Z. …419' && stated === null);
   assert.deepEqual(
     named.patients.map(({ masked }) => masked),
     ['Q. Z. …419'],
@@ -168,6 +188,12 @@ test('a decision keeps who stated whom the plan is of, its paper says so, and er
     )
   ).json.body.kept;
   assert.deepEqual([kept.plan.statement.kind, kept.plan.statement.by], ['identity', 'Ann']);
+  const captions = kept.figures.map(({ caption }) => caption.map(({ text }) => text));
+  assert.ok(captions.length > 0);
+  for (const texts of captions) {
+    const at = texts.indexOf('O. M. …327');
+    assert.match(texts[at + 1], /^stated by Ann, \d+ \w+ 20\d\d UTC$/, texts.join());
+  }
   const says = /^stated by Ann, \d+ \w+ 20\d\d, \d\d:\d\d$/;
   const [masked] = (await call(`${at}/paper`)).json.identity.fields;
   assert.equal(masked.text, 'O. M. …327');

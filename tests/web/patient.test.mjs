@@ -8,6 +8,7 @@ import { call, until } from '../api/daemon.mjs';
 import { putDose, putPlan, putStructs, putWhole } from '../api/made_dicom.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
+import { overlaps } from './overlap.mjs';
 import { bytesOf, full, missing, shoot, startWorld } from './browser.mjs';
 
 const quirin = { id: '77-30419', name: 'Zweifel^Quirin', birthDate: '19610412' };
@@ -26,7 +27,9 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     putPlan(join(folder, 'case-2'), quirin, { ...second, date: '20261012' });
     putDose(join(folder, 'case-2'), quirin, { uid: '1.2.84', plan: '1.2.74', file: 'dose2.dcm' });
     putDose(join(folder, 'case-2'), quirin, { uid: '1.2.85', file: 'dose3.dcm' });
-    putWhole(join(folder, 'nameless'), { id: '', name: '', birthDate: '' });
+    putWhole(join(folder, 'nameless'), { id: '', name: '', birthDate: '' }, { approval: 'APPROVED' });
+    putWhole(join(folder, 'bare'), quirin, { approval: 'APPROVED' });
+    putPlan(join(folder, 'bare'), quirin, { uid: '1.2.74', label: 'BNCT-1', file: 'plan2.dcm', beam: 'Back' });
     world = await startWorld({ plans: [folder] });
     page = await world.newPage(`rooms/${await world.newRoom('case-1')}`, { viewport: { width: 1440, height: 900 } });
     await full(page, 2);
@@ -234,12 +237,96 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     assert.ok(!(await own.evaluate(() => document.documentElement.outerHTML)).match(/Ludmilla|Winterstein|61-20553|1949/));
     assert.deepEqual(await axe(own), []);
     await shoot(own, 'patient-stated');
+    const { statement } = await (await fetch(`${world.daemon.url}/api/v1/plans/nameless`)).json();
+    const stated = `stated by ${statement.by}, ${new Date(statement.time_ms).toLocaleDateString('en-GB', { day: 'numeric', month: 'short' })}`;
+    await until(
+      () => own.locator('.patient-button [title^="stated by"]').getAttribute('title'),
+      (title) => title === stated,
+    );
     await own.locator('.patient-button').click();
+    await shows(own.locator('.patient-card .patient-stated'), stated);
     await own.getByRole('button', { name: 'Show to me' }).click();
     await shows(own.locator('.patient-button'), 'WINTERSTEIN, Ludmilla');
+    await shows(own.locator('.patient-card .patient-stated'), stated);
     await own.getByRole('button', { name: 'Mask it again' }).click();
+    await own.keyboard.press('Escape');
+    await own.getByRole('button', { name: 'Snapshot', exact: true }).click();
+    await own.getByRole('menuitem', { name: /Report to print/ }).click();
+    for (const part of ['.facts >> nth=0', '.sheet-foot']) await shows(own.locator(part), `L. W. …553, ${stated}`);
+    await own.keyboard.press('Escape');
+
+    const room = own.url().split('/').pop();
+    const { token: link } = (await call(`${world.daemon.url}/api/v1/rooms/${room}/links`, 'POST', { role: 'wall', expires_s: 600 })).json;
+    const wall = await world.newPage(`display/${room}#link=${link}`, { viewport: { width: 1280, height: 720 } });
+    await shows(wall.locator('.wall-whom'), 'L. W. …553');
+    await shows(wall.locator('.wall-stated'), stated);
+    /** Parts of the head that are cut, or lie over the one before. */
+    const pushed = (page, parts) =>
+      page.evaluate((list) => {
+        const all = list.map((one) => document.querySelector(one));
+        const boxes = all.map((one) => one.getBoundingClientRect());
+        const cut = list.filter((_, n) => all[n].scrollWidth > all[n].clientWidth + 1 || boxes[n].right > innerWidth);
+        return [...cut, ...list.filter((_, n) => n && boxes[n].left < boxes[n - 1].right)];
+      }, parts);
+    assert.deepEqual(await pushed(wall, ['.wall-whom', '.wall-plan', '.wall-approval']), []);
+    const size = await wall
+      .locator('.wall-stated')
+      .evaluate((one) => (Number.parseFloat(getComputedStyle(one).fontSize) * 1920) / innerWidth);
+    assert.ok(size >= 15, `${size} px of a wall of 1920`); // read from 3 m
+    assert.deepEqual(await axe(wall), []);
+    await shoot(wall, 'patient-stated-wall');
+
+    const start = await world.newPage('', { viewport: { width: 1280, height: 720 } });
+    const [row, mine] = [start.locator('.plan[data-plan=nameless]'), start.locator(`.room-row[data-room="${room}"] .title`)];
+    for (const width of [1280, 820, 390]) {
+      await start.setViewportSize({ width, height: 844 });
+      await shows(row.locator('.person'), 'L. W. …553');
+      await shows(row.locator('.person'), stated);
+      await shows(mine, `L. W. …553, ${stated}`);
+      assert.deepEqual(await overlaps(start), [], `at ${width} px`);
+      assert.deepEqual(await axe(start), []);
+    }
+    await shoot(start, 'patient-stated-start-390');
+    for (const width of [820, 390]) {
+      await own.setViewportSize({ width, height: 844 });
+      await own.locator('.patient-button').click();
+      await shows(own.locator('.patient-card .patient-stated'), stated);
+      const { x, width: wide } = await own.locator('.patient-card').boundingBox();
+      assert.ok(x >= 0 && x + wide <= width, `${x} + ${wide} at ${width} px`);
+      assert.deepEqual(await pushed(own, ['.patient-button', '.banner .approval']), []);
+      assert.deepEqual(await axe(own), []);
+      await shoot(own, `patient-stated-${width}`);
+      await own.keyboard.press('Escape');
+    }
+    await own.setViewportSize({ width: 1280, height: 720 });
+
+    await own.getByRole('tab', { name: 'Plan', exact: true }).click();
     await own.getByRole('button', { name: 'Withdraw the statement' }).click();
     await shows(own.locator('.banner .patient'), 'identity unknown');
+    await shows(wall.locator('.wall-unknown'), 'identity unknown');
+    assert.equal(await wall.locator('.wall-stated').count(), 0);
+    await start.reload();
+    await shows(row.locator('.person'), 'identity unknown');
+    assert.ok(!(await start.locator('body').textContent()).includes('stated by'));
+    for (const page of [own, wall, start]) await page.context().close();
+  });
+
+  it('the switches for the patient’s identity can be read in the narrowest window', async () => {
+    const own = await world.newPage(`rooms/${await world.newRoom('case-1')}`, { viewport: { width: 1000, height: 600 } });
+    await own.locator('.patient-button').waitFor();
+    await own.setViewportSize({ width: 200, height: 600 });
+    const isRead = async (label) => {
+      const [box, within] = [await label.boundingBox(), await label.evaluate((one) => one.scrollWidth <= one.clientWidth)];
+      assert.ok(within && box.x >= 0 && box.x + box.width <= 200 && box.width >= 120 && box.height <= 60, JSON.stringify(box));
+    };
+    await own.locator('.patient-button').click();
+    await isRead(own.locator('.patient-card label', { hasText: 'Show at once on this computer' }));
+    await own.keyboard.press('Escape');
+    await own.getByRole('button', { name: 'Snapshot', exact: true }).evaluate((button) => button.click()); // it lies outside
+    await isRead(own.locator('.snapshots label', { hasText: 'with the patient’s identity' }));
+    await own.getByRole('menuitem', { name: /Film of a turn/ }).click();
+    await isRead(own.locator('.film label', { hasText: 'with the patient’s identity' }));
+    await shoot(own, 'patient-switch-200');
     await own.context().close();
   });
 
@@ -308,6 +395,24 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     await shows(two.locator('.banner .plan-name'), 'plan 1 of 2');
     await until(facts, (now) => now.join() === before.join());
     await two.context().close();
+  });
+
+  it('a plan without a dose stands in the switch with the reason, and cannot be chosen', async () => {
+    const room = await world.newRoom('bare');
+    const own = await world.newPage(`rooms/${room}`, { viewport: { width: 1280, height: 720 } });
+    await shows(own.locator('.banner .plan-name'), 'plan 1 of 2');
+    const before = await world.scene(room);
+    await own.locator('.plan-button').click();
+    const [shown, bare] = ['BNCT-2', 'BNCT-1'].map((name) => own.getByRole('menuitemradio', { name: new RegExp(name) }));
+    assert.deepEqual([await shown.isEnabled(), await shown.getAttribute('aria-checked')], [true, 'true']);
+    await shows(bare, 'no dose in this folder');
+    assert.deepEqual([await bare.isEnabled(), await bare.getAttribute('aria-checked')], [false, 'false']);
+    await bare.evaluate((button) => button.click()); // nor by a script
+    await shows(own.locator('.banner .plan-name'), 'plan 1 of 2');
+    assert.deepEqual(await world.scene(room), before);
+    assert.deepEqual(await axe(own), []);
+    await shoot(own, 'patient-plan-bare');
+    await own.context().close();
   });
 
   it('a plan without DICOM says that it names nobody; the phantom says that it is one', async () => {

@@ -8,6 +8,7 @@ import { nameWords } from '../features/patient/patient_card.js';
 import { approvalOf, dateWords, identityOf, shownPatient, shownTreatmentPlan } from '../room/identity.js';
 import { worst } from '../room/fidelity.js';
 import { roomCalled } from '../room/room_called.js';
+import { statedBy } from '../room/stated.js';
 import { missingOf } from './missing.js';
 import { initials } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
@@ -19,6 +20,12 @@ const time = (ms) => new Date(ms).toLocaleTimeString('en-GB');
 const bar = (kind, words, more = nothing) =>
   html`<div class=${`wall-bar ${kind}`} role=${kind === 'err' ? 'alert' : 'status'}>${icon(kind === 'err' ? 'error' : 'warning', 20)}<p>${words}</p>${more}</div>`;
 
+/** The patient; below it who has stated that, where the files do not. */
+function whom(plan, name) {
+  const words = statedBy(plan);
+  return words ? html`<span class="wall-whom">${name}<span class="wall-stated">${words}</span></span>` : name;
+}
+
 function patient({ room, named }) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   if (!plan) return nothing;
@@ -26,9 +33,9 @@ function patient({ room, named }) {
   const masked = shownPatient(plan, scene);
   const full = masked && named.value ? identityOf(plan, scene, named.value) : null;
   if (full)
-    return html`<b class="wall-patient named">${nameWords(full.name)}</b><span class="wall-id">${[full.id, dateWords(full.birth_date)].filter(Boolean).join(' · ')}</span>`;
+    return html`${whom(plan, html`<b class="wall-patient named">${nameWords(full.name)}</b>`)}<span class="wall-id">${[full.id, dateWords(full.birth_date)].filter(Boolean).join(' · ')}</span>`;
   return masked
-    ? html`<b class="wall-patient">${masked.masked}</b>`
+    ? whom(plan, html`<b class="wall-patient">${masked.masked}</b>`)
     : html`<span class="wall-unknown">${icon('note', 20)} ${say.unknown}</span>`;
 }
 

@@ -84,6 +84,41 @@ static void a_snapshot_is_described(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static void a_patient_who_was_stated_has_beside_it_who_said_so_and_when_as_long_as_that_counts(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    const enum statement_state states[] = { STATEMENT_USED, STATEMENT_OUTDATED, STATEMENT_UNREAD,
+                                            STATEMENT_CONTRADICTED };
+    struct scene scene;
+    char field[128];
+    plan->patients[plan->n_patients++] = (struct plan_patient){ .id = "88-50327", .name = "Morgen^Ottilie" };
+    plan->statement = (struct plan_statement){ .kind = STATEMENT_IDENTITY,
+                                               .by = "Anna Weiss",
+                                               .time_ms = INT64_C(1795823999000) }; /* 2026-11-27 23:59:59, by `date` */
+    scene_for_plan(plan, &scene);
+    for (size_t i = 0; i < 5; i++) {
+        struct error err = { 0 };
+        plan->statement.state = states[i % 4];
+        if (i == 4) /* the files of several count as of one: the caption has the name of the files */
+            plan->statement.kind = STATEMENT_ONE_PERSON;
+        struct view view = view_default;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, "", &err));
+        assert_string_equal(row_text(&words, ANNOTATION_TITLE),
+                            i == 0 ? "Made plan|O. M. \u2026327|stated by Anna Weiss, 27 Nov 2026 UTC"
+                                   : "Made plan|O. M. \u2026327");
+        annotations_name_patient(&words, plan);
+        assert_non_null(strstr(row_text(&words, ANNOTATION_TITLE), "88-50327"));
+        assert_int_equal(strstr(row_text(&words, ANNOTATION_TITLE), "stated by") != NULL, i == 0);
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 static double ten(struct vec3 p)
 {
     return 10 + 0 * p.x;
@@ -485,6 +520,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_snapshot_is_described),
+        cmocka_unit_test(a_patient_who_was_stated_has_beside_it_who_said_so_and_when_as_long_as_that_counts),
         cmocka_unit_test(words_of_the_asker_stand_below_the_title_item_by_item),
         cmocka_unit_test(a_dose_is_described_with_what_it_lacks_and_its_levels),
         cmocka_unit_test(a_sum_of_beams_is_called_per_none_of_them),

@@ -18,7 +18,6 @@ export const say = sentences('patient.later', {
   defer: 'defer',
   identityFrom: 'Identity from',
   fromFiles: 'the DICOM files',
-  statedBy: 'stated by {by}, {date}',
   withdrawStatement: 'Withdraw the statement',
   cancelStatement: 'Cancel',
   countAsOne: 'The files of {n} patients count as of one person, stated by {by}, {date}: {words}',

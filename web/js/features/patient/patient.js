@@ -11,10 +11,11 @@ const card = later(() => import('./patient_card.js'), 'js/features/fits/fit.css'
 const unknown = html`<span class="patient-unknown dim" title=${say.unknownWhy({ why: unknownWords })}>${icon('note', 12)} <span>${say.unknown}</span></span>`;
 
 /** The mark of a patient whom a person has named, as the files do not. */
-const pencil = ({ statement: said }) =>
-  said?.state === 'used' && said.kind === 'identity'
-    ? html` <span class="dim" title=${say.statedBy({ by: said.by })}>${icon('pencil', 12)}</span>`
-    : nothing;
+function pencil(plan) {
+  const said = plan.statement;
+  if (said?.state !== 'used' || said.kind !== 'identity') return nothing;
+  return html` <span class="dim" title=${known(statement)?.statedBy(plan) || say.statedBy({ by: said.by })}>${icon('pencil', 12)}</span>`;
+}
 
 /** True where nobody signs in, and the one person at the server has it so: it is shown as soon as the room is there. */
 function isAtOnce({ room, session, storage }) {

@@ -3,6 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { effect, signal } from '../../../lib/signals-core.js';
 import { ofMember } from '../../net/api.js';
 import { identityOf, shownPatient } from '../../room/identity.js';
+import { statedBy } from '../../room/stated.js';
 import { checkbox } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
@@ -175,7 +176,9 @@ function walls(world) {
 export function patientCard(world) {
   const known = shownIdentity(world);
   const { error, isAsked } = state.value;
+  const stated = statedBy(world.room.plan.value);
   return html`<div class="popover patient-card"><h3>${say.patient}</h3>
+    ${stated ? html`<p class="note patient-stated">${icon('pencil', 12)} ${stated}</p>` : nothing}
     ${
       known
         ? html`<p><b>${known.name}</b></p>

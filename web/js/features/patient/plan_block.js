@@ -2,12 +2,13 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
 import { approvalOf, dateWords, shownPatient, shownTreatmentPlan, unknownWords } from '../../room/identity.js';
+import { statedBy } from '../../room/stated.js';
 import { listed } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
 import { choosePlan } from './plan_switch.js';
 import { dosesOf } from './plan_choice.js';
-import { identityForm, statedBy, statedRow } from './statement.js';
+import { identityForm, statedRow } from './statement.js';
 
 function approvalCell(treatment) {
   const [word, kind, picture] = approvalOf(treatment);

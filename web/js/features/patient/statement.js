@@ -5,6 +5,7 @@ import { signal } from '../../../lib/signals-core.js';
 import { ofMember } from '../../net/api.js';
 import { icon } from '../../parts/icons.js';
 import { day } from '../../parts/when.js';
+import { statedBy } from '../../room/stated.js';
 import { say } from './later_words.js';
 
 const retryMs = 500;
@@ -40,10 +41,6 @@ async function send(world, body, tries = mostTries, turn = ++turns) {
     set({ error: problem.message, isSent: false });
   }
 }
-
-/** "stated by Anna Weiss, 27 Nov 2026"; '' where the patient is not stated. */
-export const statedBy = ({ statement }) =>
-  statement?.state === 'used' && statement.kind === 'identity' ? say.statedBy({ by: statement.by, date: day(statement.time_ms) }) : '';
 
 /** Where people sign in, a planner who may read the identity. */
 const mayState = ({ room, session }) =>
@@ -118,6 +115,8 @@ export function identityForm(world) {
     ${field('id', say.id, { most: 32 })}${field('birth', say.born, { type: 'date', isOptional: true })}
     <p class="note">${say.statedIs}</p>${failed(world, 'identity')}${buttons(say.stateIt)}</form>`;
 }
+
+export { statedBy };
 
 /** In the Plan tab: who has stated whom the plan is of. */
 export const statedRow = (world) => html`<div>${statedBy(world.room.plan.value)}</div>${withdraw(world)}${failed(world, '')}`;

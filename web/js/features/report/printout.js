@@ -11,6 +11,7 @@ import { draftBelongs, draftWords } from '../beams/beam_words.js';
 import { hasCharts } from '../dose/plots/chart_loader.js';
 import { printable } from '../../room/exports.js';
 import { ofFits } from '../fits/feature.js';
+import { statedBy } from '../../room/stated.js';
 import { listed, number, signed, significant, unitText } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { measureName, valueText } from '../measures/measure_words.js';
@@ -73,7 +74,10 @@ function printedAt(date) {
 }
 
 /** Masked: a report is never of a full name. */
-const patientWords = ({ room }, plan) => shownPatient(plan, room.scene.value)?.masked ?? (plan.isPhantom ? say.isPhantom : unknownWords);
+function patientWords({ room }, plan) {
+  const patient = shownPatient(plan, room.scene.value);
+  return patient ? listed(patient.masked, statedBy(plan)) : plan.isPhantom ? say.isPhantom : unknownWords;
+}
 
 /** The treatment plan that is shown, its approval and prescription; [] where the files have none. */
 function treatmentRows({ room }, plan) {

@@ -7,7 +7,7 @@ import { initials, number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { roomName } from '../../parts/when.js';
 import { say } from './later_words.js';
-import { roomFacts, titleOf } from './plan_row.js';
+import { patientOf, roomFacts, titleOf } from './plan_row.js';
 import { whoIn } from './who_in.js';
 
 /** Rooms of this person: theirs, those they were in or were asked to, asleep ones too; those with people in them first. */
@@ -31,7 +31,7 @@ export function roomsList(state, ownName) {
         const names = members.length ? members.map((member) => member.name) : room.were_in;
         return html`<li class="room-row" data-room=${room.id}>
       <span class="avatars" aria-hidden="true">${names.slice(0, 3).map(avatar)}${names.length ? nothing : icon('people')}</span>
-      <span class="title"><b>${name}</b><span class="dim">${[plan?.patient, room.name && title].filter(Boolean).join(', ')}</span></span><span class="who">${facts}</span>
+      <span class="title"><b>${name}</b><span class="dim">${[patientOf(plan), room.name && title].filter(Boolean).join(', ')}</span></span><span class="who">${facts}</span>
       <button aria-label=${say.joinOf({ room: name, who: facts })} @click=${() => state.goOn(room)}>${say.goIn}</button></li>`;
       },
     )}</ul></section>`;

@@ -6,7 +6,7 @@ import { icon } from '../../parts/icons.js';
 import { later } from '../../parts/lazy.js';
 import { when } from '../../parts/when.js';
 import { say } from './later_words.js';
-import { titleOf } from './plan_row.js';
+import { patientOf, titleOf } from './plan_row.js';
 
 /** The value of a field datetime-local, by the clock of this browser. */
 const fieldTime = (ms) => (ms ? new Date(ms - new Date(ms).getTimezoneOffset() * 60000).toISOString().slice(0, 16) : '');
@@ -46,7 +46,7 @@ function caseForm(meetings, { id, cases }) {
     <label>${say.planOfCase}<select name="plan">${repeat(
       plans,
       ({ id: plan }) => plan,
-      (plan) => html`<option value=${plan.id}>${[plan.patient, titleOf(plan), plan.id].filter(Boolean).join(' · ')}</option>`,
+      (plan) => html`<option value=${plan.id}>${[patientOf(plan), titleOf(plan), plan.id].filter(Boolean).join(' · ')}</option>`,
     )}</select></label>
     <button class="primary" ?disabled=${!plans.length}>${say.addIt}</button><p class="note" role="status">${list ? found : say.looking}</p></form>`;
 }

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { isOfServer } from '../../room/plans.js';
+import { statedWords } from '../../room/stated.js';
 import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';
@@ -15,6 +16,9 @@ const isWaiting = (plan) => plan.state === 'failed' && isOfServer(plan.problem);
 /** Why the plan cannot be opened, if known. */
 export const refusalOf = (state, plan) =>
   state.refusals.value[plan.id] || (['failed', 'unreadable'].includes(plan.state) && !isWaiting(plan) ? plan.reason : '');
+
+/** The masked patient of a plan, and who has stated that where the files do not; '' where nobody has. */
+export const patientOf = (plan) => (plan?.stated ? `${plan.patient}, ${statedWords(plan.stated)}` : (plan?.patient ?? ''));
 
 /** The title of a plan in lists: its label, else its name. */
 export const titleOf = (plan) => plan.label || plan.name;
@@ -43,6 +47,10 @@ const thumbnail = (url, refusal) =>
 function person(plan) {
   if (plan.is_phantom) return html`<div class="person"><span class="tag phantom">${say.phantom}</span></div>`;
   if (!plan.patient) return html`<div class="person unknown"><b>${say.unknown}</b><span>${say.notInFiles}</span></div>`;
+  if (plan.stated) {
+    const words = statedWords(plan.stated);
+    return html`<div class="person"><b>${plan.patient}</b><span class="stated" title=${words}>${words}</span></div>`;
+  }
   return html`<div class="person"><b>${plan.patient}</b>${plan.n_patients > 1 ? html`<span class="err">${say.nPatients({ n: plan.n_patients })}</span>` : html`<span>${say.bornHidden}</span>`}</div>`;
 }
 
