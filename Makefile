@@ -113,6 +113,8 @@ EXTRA_core_dose_dvh_sampler := -O3 -fno-trapping-math
 EXTRA_core_surface_isosurface_bricks := -O3 -fno-trapping-math
 # And the histories of a simulation.
 EXTRA_core_transport_walk := -O3
+EXTRA_core_transport_diffusion := -O3
+EXTRA_core_transport_smooth := -O3
 # And the rows of a picture that is reduced.
 EXTRA_core_base_image_reduce := -O3
 # FreeType's headers; the font that is compiled in is core/annotate/font.c's.

@@ -106,11 +106,41 @@ static uint8_t block_material(const struct geometry *geometry, const int32_t blo
     return first;
 }
 
+/* Steps to the nearest block that is not all air, diagonals as one; air beyond the box. There and back (A. Rosenfeld,
+ * J. L. Pfaltz, 1966), through the half of the neighbours that came before. */
+static void measure_air(struct geometry *geometry)
+{
+    enum { FAR = 255, HALF = 13 };
+    const int32_t *n = geometry->n_blocks;
+    size_t n_blocks = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+    for (size_t i = 0; i < n_blocks; i++)
+        geometry->clear[i] = geometry->blocks[i] == 0 ? FAR : 0;
+    for (int way = 0; way < 2; way++)
+        for (size_t count = 0; count < n_blocks; count++) {
+            size_t block = way ? n_blocks - 1 - count : count;
+            const int32_t i = (int32_t)(block % (size_t)n[0]), j = (int32_t)(block / (size_t)n[0] % (size_t)n[1]),
+                          k = (int32_t)(block / (size_t)n[0] / (size_t)n[1]);
+            for (int near = 0; near < HALF && geometry->clear[block] > 0; near++) {
+                int sign = way ? -1 : 1, a = i + sign * (near % 3 - 1), b = j + sign * (near / 3 % 3 - 1),
+                    c = k + sign * (near / 9 - 1);
+                if (a < 0 || b < 0 || c < 0 || a >= n[0] || b >= n[1] || c >= n[2])
+                    continue;
+                uint8_t steps = geometry->clear[((size_t)c * (size_t)n[1] + (size_t)b) * (size_t)n[0] + (size_t)a];
+                if (steps + 1 < geometry->clear[block])
+                    geometry->clear[block] = (uint8_t)(steps + 1);
+            }
+        }
+    for (size_t i = 0; i < n_blocks; i++)
+        geometry->clear[i] = (uint8_t)(geometry->clear[i] > 0 ? geometry->clear[i] - 1 : 0);
+}
+
 static bool make_blocks(struct geometry *geometry, const atomic_bool *cancel, struct error *err)
 {
     const int32_t *n = geometry->n_blocks;
-    geometry->blocks = mem_array((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 1, (uint64_t)1 << 30, err);
-    if (!geometry->blocks)
+    size_t n_blocks = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+    geometry->blocks = mem_array(n_blocks, 1, (uint64_t)1 << 30, err);
+    geometry->clear = geometry->blocks ? mem_array(n_blocks, 1, (uint64_t)1 << 30, err) : NULL;
+    if (!geometry->clear)
         return false;
     uint8_t *at = geometry->blocks;
     for (int32_t k = 0; k < n[2]; k++) {
@@ -120,6 +150,7 @@ static bool make_blocks(struct geometry *geometry, const atomic_bool *cancel, st
             for (int32_t i = 0; i < n[0]; i++)
                 *at++ = block_material(geometry, (int32_t[]){ i, j, k });
     }
+    measure_air(geometry);
     return true;
 }
 
@@ -207,6 +238,22 @@ static bool measure_matter(struct geometry *geometry, const atomic_bool *cancel,
     return true;
 }
 
+static bool make_rows(struct geometry *geometry, struct error *err)
+{
+    size_t n = (size_t)geometry->n_cells[0], n_rows = (size_t)geometry->n_cells[1] * (size_t)geometry->n_cells[2];
+    geometry->rows = mem_array(n_rows, sizeof *geometry->rows, UINT64_MAX, err);
+    for (size_t row = 0; geometry->rows && row < n_rows; row++) {
+        size_t begin = row * n, end = begin + n;
+        while (begin < end && !(geometry->matter[begin] > 0))
+            begin++;
+        while (end > begin && !(geometry->matter[end - 1] > 0))
+            end--;
+        if (begin < end)
+            geometry->rows[geometry->n_rows++] = (struct cell_row){ (uint32_t)begin, (uint32_t)(end - begin) };
+    }
+    return geometry->rows != NULL;
+}
+
 bool geometry_init(struct geometry *geometry, const struct grid *grid, const uint8_t *voxels, const struct grid *cells,
                    double cell_mm, const atomic_bool *cancel, struct error *err)
 {
@@ -221,7 +268,8 @@ bool geometry_init(struct geometry *geometry, const struct grid *grid, const uin
     else if (!own_cells(geometry, cell_mm, err))
         return false;
     geometry->are_cells_blocks = !cells && cell_mm / 10 == GEOMETRY_BLOCK_CM;
-    if (aim_cells(geometry, err) && make_blocks(geometry, cancel, err) && measure_matter(geometry, cancel, err))
+    if (aim_cells(geometry, err) && make_blocks(geometry, cancel, err) && measure_matter(geometry, cancel, err) &&
+        make_rows(geometry, err))
         return true;
     geometry_finish(geometry);
     return false;
@@ -243,9 +291,13 @@ bool geometry_holds_cell(const struct geometry *geometry, size_t cell)
 void geometry_finish(struct geometry *geometry)
 {
     free(geometry->blocks);
+    free(geometry->clear);
     free(geometry->matter);
+    free(geometry->rows);
     geometry->blocks = NULL;
+    geometry->clear = NULL;
     geometry->matter = NULL;
+    geometry->rows = NULL;
 }
 
 void geometry_direct(const struct geometry *geometry, struct vec3 direction_lps, double direction[3])

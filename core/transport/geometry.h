@@ -14,6 +14,10 @@ enum {
 #define GEOMETRY_BLOCK_CM 0.5
 #define GEOMETRY_PAD_CM 2.0 /* of air around the matter: cells at its surface lie within */
 
+struct cell_row {
+    uint32_t begin, n; /* cells that follow each other */
+};
+
 struct geometry {
     uint32_t n[3];
     const uint8_t *voxels;     /* material by voxel, 0 air; borrowed */
@@ -21,12 +25,15 @@ struct geometry {
     float size_cm[3];          /* of the box */
     int32_t n_blocks[3];
     uint8_t *blocks; /* material of a block, or GEOMETRY_MIXED */
+    uint8_t *clear;  /* widths of a block that are air all round it */
 
     struct grid cells; /* of the tally, in patient coordinates */
     float cells_per_cm[3], cells_shift[3];
     int32_t n_cells[3];
     bool are_cells_blocks; /* each cell is a block, and of the same index */
     float *matter;         /* share of a cell that is not air */
+    struct cell_row *rows; /* with all cells that hold matter */
+    size_t n_rows;
 
     struct vec3 axis_lps[3], corner_lps_mm; /* of the box */
 };

@@ -54,11 +54,20 @@ double photon_bin_mev(int bin)
     return ldexp(1 + (bin % 32 + .5) / 32, bin / 32 - 6);
 }
 
-/* Atoms per barn and cm of each element. */
+double medium_atoms(const struct material *material, enum element element)
+{
+    return AVOGADRO_B * material->g_cm3 * material->weight[element] / elements[element].g_mol;
+}
+
+enum nuclide_id medium_nuclide(enum element element)
+{
+    return elements[element].nuclide;
+}
+
 static void densities(const struct material *material, double atoms[N_ELEMENTS + 1])
 {
     for (int i = 0; i < N_ELEMENTS; i++)
-        atoms[i] = AVOGADRO_B * material->g_cm3 * material->weight[i] / elements[i].g_mol;
+        atoms[i] = medium_atoms(material, (enum element)i);
     atoms[BORON] = AVOGADRO_B * material->g_cm3 * material->boron_ppm * 1e-6 / BORON_G_MOL;
 }
 

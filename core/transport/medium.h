@@ -41,6 +41,8 @@ struct medium {
     float electrons;                              /* per cm3, in those of water of 1 g/cm3 */
 };
 void medium_init(struct medium *medium, const struct material *material);
+double medium_atoms(const struct material *material, enum element element); /* per barn and cm */
+enum nuclide_id medium_nuclide(enum element element);                       /* that stands for it in scattering */
 
 /* Data shared by all media. */
 struct particle_tables {

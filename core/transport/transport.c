@@ -9,7 +9,7 @@
 #include "core/transport/run.h"
 
 /* A batch is what a lane can add up in single precision without loss; a photon of the beam for each eight neutrons. */
-enum { CHUNK = 256, NEUTRONS_PER_PHOTON = 8 };
+enum { CHUNK = 256, NEUTRONS_PER_PHOTON = 8, PHOTONS_PER_NEUTRON = 8 };
 #define PHOTON_STREAM (UINT64_C(1) << 62) /* random numbers of the beam's photons, beyond all neutrons' */
 
 static bool check_pose(struct vec3 aperture_lps_mm, struct vec3 direction_lps, struct error *err)
@@ -52,20 +52,19 @@ static bool check(const struct transport_input *input, struct error *err)
         return false;
     if (input->beam->neutrons.n == 0)
         return error_set(err, ERROR_RANGE, "the beam has no neutrons");
+    if (input->mode == TRANSPORT_HYBRID &&
+        (input->cells || input->is_whole_cells || input->cell_mm != GEOMETRY_BLOCK_CM * 10))
+        return error_set(err, ERROR_RANGE, "in hybrid mode other cells than %g mm of its own, in what is not air",
+                         GEOMETRY_BLOCK_CM * 10);
     return check_voxels(input, err);
-}
-
-static bool is_asked_to_stop(const struct transport_run *run)
-{
-    return run->input.cancel && atomic_load(run->input.cancel);
 }
 
 static bool make_lanes(struct transport_run *run, struct error *err)
 {
+    size_t n = run->n_cells * run->world.n_tallies;
     for (int lane = 0; lane < LANES; lane++) {
-        run->sums[lane] = mem_array(run->n_cells, sizeof *run->sums[lane], UINT64_MAX, err);
-        run->lanes[lane].tally =
-            run->sums[lane] ? mem_array(run->n_cells, sizeof *run->lanes[lane].tally, UINT64_MAX, err) : NULL;
+        run->sums[lane] = mem_array(n, sizeof *run->sums[lane], UINT64_MAX, err);
+        run->lanes[lane].tally = run->sums[lane] ? mem_array(n, sizeof *run->lanes[lane].tally, UINT64_MAX, err) : NULL;
         if (!run->lanes[lane].tally)
             return false;
     }
@@ -81,12 +80,13 @@ static bool prepare(struct transport_run *run, struct error *err)
     run->tables = run->media ? mem_array(1, sizeof *run->tables, UINT64_MAX, err) : NULL;
     if (!run->tables)
         return false;
-    for (size_t i = 0; i < input->n_materials && !is_asked_to_stop(run); i++)
+    for (size_t i = 0; i < input->n_materials && !run_is_asked_to_stop(run); i++)
         medium_init(&run->media[i], &input->materials[i]);
     particle_tables_init(run->tables);
     run->n_cells = grid_n_voxels(&run->geometry.cells);
-    if (is_asked_to_stop(run))
+    if (run_is_asked_to_stop(run))
         return say_cancelled(err);
+    run->world.n_tallies = input->mode == TRANSPORT_HYBRID ? N_SLOW_TALLIES : N_TALLIES;
     if (!make_lanes(run, err))
         return false;
     run->world.geometry = &run->geometry;
@@ -94,10 +94,14 @@ static bool prepare(struct transport_run *run, struct error *err)
     run->world.n_media = input->n_materials;
     run->world.tables = run->tables;
     run->world.is_whole_cells = input->is_whole_cells;
+    run->world.photons_per_neutron = PHOTONS_PER_NEUTRON;
+    run->neutrons_per_photon = NEUTRONS_PER_PHOTON;
+    if (input->mode == TRANSPORT_HYBRID && !hybrid_init(run, err))
+        return false;
     world_init(&run->world);
     const struct particle_list *neutrons = &input->beam->neutrons, *photons = &input->beam->photons;
     if (photons->n > 0 && photons->per_unit > 0)
-        run->photon_weight = NEUTRONS_PER_PHOTON * photons->per_unit / neutrons->per_unit;
+        run->photon_weight = (double)run->neutrons_per_photon * photons->per_unit / neutrons->per_unit;
     return transport_run_aim(run, input->aperture_lps_mm, input->direction_lps, err);
 }
 
@@ -109,6 +113,7 @@ struct transport_run *transport_run_create(const struct transport_input *input, 
     if (!run)
         return NULL;
     run->input = *input;
+    run->n_threads = input->n_threads < 1 ? 1 : input->n_threads < LANES ? input->n_threads : LANES;
     if (prepare(run, err))
         return run;
     transport_run_destroy(run);
@@ -123,6 +128,7 @@ void transport_run_destroy(struct transport_run *run)
         free(run->sums[lane]);
         free(run->lanes[lane].tally);
     }
+    hybrid_finish(run);
     geometry_finish(&run->geometry);
     free(run->media);
     free(run->tables);
@@ -148,8 +154,6 @@ bool transport_run_aim(struct transport_run *run, struct vec3 aperture_lps_mm, s
     geometry_direct(&run->geometry, across[0], world->axis[0]);
     geometry_direct(&run->geometry, across[1], world->axis[1]);
     geometry_direct(&run->geometry, along, world->axis[2]);
-    for (int lane = 0; lane < LANES && run->n_histories > 0; lane++)
-        memset(run->sums[lane], 0, run->n_cells * sizeof *run->sums[lane]);
     memset(run->balances, 0, sizeof run->balances);
     run->n_histories = 0;
     run->seconds = 0;
@@ -172,36 +176,31 @@ static uint64_t lane_share(uint64_t n, int lane)
     return n / LANES + (n % LANES > (uint64_t)lane);
 }
 
-/* After each chunk. True if the lane has to stop. */
-static bool pause_lane(struct transport_run *run, bool is_caller)
-{
-    if (is_asked_to_stop(run))
-        atomic_store(&run->is_cancelled, true);
-    if (atomic_load(&run->is_cancelled))
-        return true;
-    uint64_t done = atomic_fetch_add(&run->n_done, CHUNK) + CHUNK;
-    if (is_caller && run->input.progress)
-        run->input.progress(run->input.context, fmin(1, (double)done / (double)run->n_step));
-    return false;
-}
-
-static void work(struct transport_run *run, int index, bool is_caller)
+static void work(struct transport_run *run, int index, int thread)
 {
     const struct phase_space *beam = run->input.beam;
     struct lane *lane = &run->lanes[index];
     uint64_t from = lane_share(run->n_histories, index), to = lane_share(run->n_histories + run->n_batch, index);
     for (uint64_t i = from; i < to; i++) {
-        if ((i - from) % CHUNK == 0 && pause_lane(run, is_caller))
+        if ((i - from) % CHUNK == 0 && run_pause(run, thread == 0, CHUNK))
             return;
         uint64_t stream = i * LANES + (uint64_t)index;
         struct random random = random_of(run->input.seed, stream);
-        walk_neutron(&run->world, lane, entry(&beam->neutrons, index, i), &random);
-        if (run->photon_weight > 0 && i % NEUTRONS_PER_PHOTON == (uint64_t)index % NEUTRONS_PER_PHOTON) {
-            const struct particle *photon = entry(&beam->photons, index, i / NEUTRONS_PER_PHOTON);
+        const struct particle *particle = entry(&beam->neutrons, index, i);
+        bool is_hybrid = run->input.mode == TRANSPORT_HYBRID;
+        float weight = is_hybrid ? hybrid_weight(run, particle, &random) : particle->weight;
+        if (weight > 0)
+            walk_neutron(&run->world, lane, particle, weight, &random);
+        if (is_hybrid)
+            hybrid_fast(run, index, i);
+        if (run->photon_weight > 0 && i % run->neutrons_per_photon == (uint64_t)index % run->neutrons_per_photon) {
+            const struct particle *photon = entry(&beam->photons, index, i / run->neutrons_per_photon);
             random = random_of(run->input.seed, PHOTON_STREAM | stream);
             walk_photon(&run->world, lane, photon, photon->weight * (float)run->photon_weight, &random);
         }
     }
+    if (run->input.mode == TRANSPORT_HYBRID)
+        hybrid_spread(run, index, thread, from, to);
 }
 
 static void work_lanes(void *context, int part, int n_parts)
@@ -209,34 +208,53 @@ static void work_lanes(void *context, int part, int n_parts)
     struct transport_run *run = context;
     (void)n_parts;
     for (int lane; (lane = atomic_fetch_add(&run->next_lane, 1)) < LANES;)
-        work(run, lane, part == 0);
+        work(run, lane, part);
 }
 
-/* Moves what lanes added up in a batch to their sums, or drops it. */
+static void flush(const struct transport_run *run, size_t n, float *from, double *to, bool is_kept)
+{
+    bool is_first = run->n_histories == 0;
+    for (size_t i = 0; i < n && is_kept; i++)
+        to[i] = (is_first ? 0 : to[i]) + (double)from[i];
+    memset(from, 0, n * sizeof *from);
+}
+
+static void flush_row(struct transport_run *run, int index, struct cell_row row, bool is_kept)
+{
+    size_t n = run->world.n_tallies;
+    flush(run, row.n * n, run->lanes[index].tally + row.begin * n, run->sums[index] + row.begin * n, is_kept);
+    if (run->lanes[index].born)
+        memset(run->lanes[index].born + row.begin, 0, row.n * sizeof(float));
+}
+
+/* Moves what lanes added up in a batch to their sums, or drops it; the first one of a pose replaces what was there.
+ * Whole cells: all; else nothing is outside matter. */
 static void flush_lanes(void *context, int part, int n_parts)
 {
     struct transport_run *run = context;
-    size_t n = atomic_load(&run->is_cancelled) ? 0 : run->n_cells * N_TALLIES;
+    bool is_kept = !atomic_load(&run->is_cancelled);
+    const struct cell_row all = { 0, (uint32_t)run->n_cells };
     for (int index = part; index < LANES; index += n_parts) {
         struct lane *lane = &run->lanes[index];
-        const float *from = lane->tally[0];
-        double *to = run->sums[index][0];
-        for (size_t i = 0; i < n; i++)
-            to[i] += (double)from[i];
-        if (n > 0)
+        if (run->input.is_whole_cells)
+            flush_row(run, index, all, is_kept);
+        for (size_t row = 0; row < run->geometry.n_rows && !run->input.is_whole_cells; row++)
+            flush_row(run, index, run->geometry.rows[row], is_kept);
+        for (size_t i = 0; i < run->wider.n_held; i++)
+            flush(run, N_SMOOTH, lane->smooth[run->wider.held[i]], run->smooth_sums[index][run->wider.held[i]],
+                  is_kept);
+        if (is_kept)
             balance_add(&run->balances[index], &lane->balance);
-        memset(lane->tally, 0, run->n_cells * sizeof *lane->tally);
         lane->balance = (struct balance){ 0 };
     }
 }
 
 static bool run_batch(struct transport_run *run, uint64_t n_histories)
 {
-    int n = run->input.n_threads < 1 ? 1 : run->input.n_threads < LANES ? run->input.n_threads : LANES;
     run->n_batch = n_histories;
     atomic_store(&run->next_lane, 0);
-    parallel_run(n, work_lanes, run);
-    parallel_run(n, flush_lanes, run);
+    parallel_run(run->n_threads, work_lanes, run);
+    parallel_run(run->n_threads, flush_lanes, run);
     if (atomic_load(&run->is_cancelled))
         return false;
     run->n_histories += n_histories;

@@ -7,7 +7,7 @@
 #include "core/transport/phase_space.h"
 #include "core/volume/volume.h"
 
-#define TRANSPORT_MODEL "3" /* changes with whatever changes a number */
+#define TRANSPORT_MODEL "4" /* changes with whatever changes a number */
 #define TRANSPORT_MAX_HISTORIES UINT64_C(100000000000)
 #define TRANSPORT_BATCH UINT64_C(1048576) /* histories of a step that a cancelled one loses at most */
 
@@ -22,9 +22,15 @@ enum transport_quantity {
     TRANSPORT_N_QUANTITIES
 };
 
+enum transport_mode {
+    TRANSPORT_FULL,  /* each neutron is followed to its end */
+    TRANSPORT_HYBRID /* farther than 1 cm from air slow neutrons diffuse: faster, for previews */
+};
+
 struct transport_input {
-    const struct grid *grid; /* of the voxels */
-    const uint8_t *voxels;   /* [k][j][i]: 0 air, else 1 + index in materials */
+    enum transport_mode mode; /* hybrid: cells of 5 mm of its own, not whole ones */
+    const struct grid *grid;  /* of the voxels */
+    const uint8_t *voxels;    /* [k][j][i]: 0 air, else 1 + index in materials */
     const struct material *materials;
     size_t n_materials; /* 1 to MATERIAL_MAX */
     const struct phase_space *beam;
@@ -60,7 +66,12 @@ struct transport_result {
 
 /* A simulation that goes on: histories are added step by step, looked at in between, and begun anew for another pose of
  * the beam without what does not depend on the pose. Owned: create, destroy. One thread at a time, which starts
- * n_threads and joins them before it returns. Equal steps give equal bytes, whatever n_threads is. */
+ * n_threads and joins them before it returns. Equal steps give equal bytes, whatever n_threads is, and whatever poses
+ * were before.
+ *
+ * A preview that follows a dragged beam keeps one for each plan: create prepares the scene once (geometry, media, the
+ * operator of diffusion); for each pose aim, a step of 100,000 and read; at rest further steps, each as large as all
+ * before it, and read. A newer pose sets cancel, clears it when the step has returned, and aims. */
 struct transport_run;
 
 /* The whole input is checked before memory is taken. What the input points to is the caller's, and lives and does not

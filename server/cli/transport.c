@@ -21,6 +21,7 @@ struct words {
     bool has_entry, has_target, is_sera_cells;
     struct vec3 entry_lps_mm, target_lps_mm;
     uint64_t n_histories, seed;
+    enum transport_mode mode;
     double cell_mm;           /* 0: not said */
     double neutrons_per_unit; /* of a file of particles; 0: not given */
 };
@@ -44,7 +45,8 @@ static void print_help(void)
         "  --target X,Y,Z       a point the beam's axis goes through\n"
         "  --histories N        neutrons that are followed, 16 to 1e11 (default 1000000); the error falls with their root\n"
         "  --seed N             of the random numbers (default 1); equal input gives equal files\n"
-        "  --mode full          every neutron is followed to its end; there is no other mode yet\n"
+        "  --mode full|hybrid   full (default): every neutron is followed to its end; hybrid: farther than 1 cm from air slow\n"
+        "                       neutrons diffuse, which is faster and within 2 %% of it\n"
         "  --cells MM           side of the cells, 1 to 50 (default 5); what is not air counts\n"
         "  --sera-cells         instead of them those of the plan's first dose, tallied whole, air included, as seraMC does\n"
         "  --help               this text\n",
@@ -120,9 +122,10 @@ static int take_option(struct words *words, int option, const char *word)
                    ? 0
                    : command_usage_error("transport", "--seed '%s' is not a whole number from 0 to 9e15", optarg);
     case 'm':
-        return strcmp(optarg, "full") == 0
+        words->mode = strcmp(optarg, "hybrid") == 0 ? TRANSPORT_HYBRID : TRANSPORT_FULL;
+        return words->mode == TRANSPORT_HYBRID || strcmp(optarg, "full") == 0
                    ? 0
-                   : command_usage_error("transport", "--mode is \"%s\", expected full", optarg);
+                   : command_usage_error("transport", "--mode is \"%s\", expected full or hybrid", optarg);
     default: return command_usage_error("transport", "'%s' is not an option or lacks its value", word);
     }
 }
@@ -156,6 +159,9 @@ static int take_words(struct words *words, int argc, char **argv)
         return command_usage_error("transport", "--entry and --target belong together");
     if (words->cell_mm > 0 && words->is_sera_cells)
         return command_usage_error("transport", "--cells and --sera-cells are of different cells");
+    if (words->mode == TRANSPORT_HYBRID && (words->is_sera_cells || (words->cell_mm > 0 && words->cell_mm != 5)))
+        return command_usage_error("transport",
+                                   "--cells and --sera-cells need --mode full: hybrid mode has cells of 5 mm");
     words->plan = argv[optind];
     return 0;
 }
@@ -283,7 +289,8 @@ static bool simulate(const struct words *words, struct plan *plan, const struct 
     if (!make_list(&beam, words, read, n_threads, err))
         return false;
     struct vec3 along = vec3_sub(file->target_lps_mm, file->entry_lps_mm);
-    struct transport_input input = { .grid = scene->grid,
+    struct transport_input input = { .mode = words->mode,
+                                     .grid = scene->grid,
                                      .voxels = scene->voxels,
                                      .materials = scene->materials,
                                      .n_materials = scene->n_materials,
@@ -301,7 +308,7 @@ static bool simulate(const struct words *words, struct plan *plan, const struct 
     if (!is_done)
         return false;
     print_result(&result, words->out);
-    is_done = transport_add_dose(plan, &result, file->per, words->seed, err) && write(words, plan, err);
+    is_done = transport_add_dose(plan, &result, file->per, words->mode, words->seed, err) && write(words, plan, err);
     transport_result_finish(&result);
     return is_done;
 }

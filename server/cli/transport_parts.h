@@ -53,5 +53,5 @@ void transport_scene_finish(struct transport_scene *scene);
 
 /* Adds the result to the plan as its last dose, in the unit of the plan's first if that is cGy, else in Gy; takes the
  * result's volumes. ERROR_LIMIT: the plan has PLAN_MAX_DOSES */
-NODISCARD bool transport_add_dose(struct plan *plan, struct transport_result *result, const char *per, uint64_t seed,
-                                  struct error *err);
+NODISCARD bool transport_add_dose(struct plan *plan, struct transport_result *result, const char *per,
+                                  enum transport_mode mode, uint64_t seed, struct error *err);

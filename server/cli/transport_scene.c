@@ -259,13 +259,14 @@ static void make_id(const struct plan *plan, char id[64])
 }
 
 /* A long note is cut, and not what is said of the dose. */
-static void add_note(struct plan *plan, const char *id, uint64_t n_histories, uint64_t seed)
+static void add_note(struct plan *plan, const char *id, enum transport_mode mode, uint64_t n_histories, uint64_t seed)
 {
     char note[256];
     size_t added = (size_t)snprintf(note, sizeof note,
-                                    "Dose '%s': beamroom %s, transport model %s, %" PRIu64 " histories, seed %" PRIu64
+                                    "Dose '%s': beamroom %s, transport model %s%s, %" PRIu64 " histories, seed %" PRIu64
                                     "; approximate, not for treatment.",
-                                    id, BEAMROOM_VERSION, TRANSPORT_MODEL, n_histories, seed);
+                                    id, BEAMROOM_VERSION, TRANSPORT_MODEL,
+                                    mode == TRANSPORT_HYBRID ? " in hybrid mode" : "", n_histories, seed);
     size_t used = strlen(plan->note), room = sizeof plan->note - added - 5;
     bool is_cut = used > room;
     for (used = is_cut ? room : used; is_cut && used > 0 && ((unsigned char)plan->note[used] & 0xc0) == 0x80;)
@@ -273,8 +274,8 @@ static void add_note(struct plan *plan, const char *id, uint64_t n_histories, ui
     snprintf(plan->note + used, sizeof plan->note - used, "%s%s%s", is_cut ? "..." : "", used > 0 ? " " : "", note);
 }
 
-bool transport_add_dose(struct plan *plan, struct transport_result *result, const char *per, uint64_t seed,
-                        struct error *err)
+bool transport_add_dose(struct plan *plan, struct transport_result *result, const char *per, enum transport_mode mode,
+                        uint64_t seed, struct error *err)
 {
     if (plan->n_doses == PLAN_MAX_DOSES)
         return error_set(err, ERROR_LIMIT, "the plan has %d doses already, at most %d", PLAN_MAX_DOSES, PLAN_MAX_DOSES);
@@ -308,6 +309,6 @@ bool transport_add_dose(struct plan *plan, struct transport_result *result, cons
     origin.path[0] = origin.set_label[0] = '\0';
     plan->dose_origins[plan->n_doses] = origin;
     plan->n_doses++;
-    add_note(plan, dose->id, result->n_histories, seed);
+    add_note(plan, dose->id, mode, result->n_histories, seed);
     return true;
 }

@@ -69,6 +69,10 @@ describe('beamroom transport', () => {
       const [one, two] = outs.map((out) => readFileSync(join(out, 'doses', `${dose.id}_${file}.nii.gz`)));
       assert.ok(one.equals(two), `${file} is the same for a seed`);
     }
+    const hybrid = join(folder, 'simulated hybrid');
+    const quick = beamroom('transport', plan, '-o', hybrid, '--beam', beam, '--histories', '2000', '--mode', 'hybrid');
+    assert.equal(quick.status, 0, quick.stderr);
+    assert.match(JSON.parse(readFileSync(join(hybrid, 'plan.json'), 'utf8')).note, /transport model \d+ in hybrid mode, 2000 histories/);
     const again = beamroom('transport', plan, '-o', outs[0], '--beam', beam);
     assert.equal(again.status, 1);
     assert.match(again.stderr, /is there already and is not empty/);

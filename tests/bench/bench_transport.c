@@ -54,6 +54,38 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* A preview's update: another pose, histories, doses. */
+static double update(struct transport_run *run, const struct transport_input *input)
+{
+    struct transport_result result;
+    struct error err = { 0 };
+    int64_t began_us = clock_now_us();
+    if (!transport_run_aim(run, input->aperture_lps_mm, input->direction_lps, &err) ||
+        !transport_run_step(run, input->n_histories, &err) || !transport_run_read(run, &result, &err))
+        die(&err);
+    transport_result_finish(&result);
+    return (double)(clock_now_us() - began_us) / 1000;
+}
+
+static void measure_updates(struct transport_input input)
+{
+    double ms[REPEATS];
+    struct error err = { 0 };
+    input.mode = TRANSPORT_HYBRID;
+    struct transport_run *run = transport_run_create(&input, &err);
+    if (!run)
+        die(&err);
+    update(run, &input);
+    for (int i = 0; i < REPEATS; i++)
+        ms[i] = update(run, &input);
+    transport_run_destroy(run);
+    qsort(ms, REPEATS, sizeof *ms, by_size);
+    printf(
+        "{\"name\":\"an update of 100,000 histories in hybrid mode\",\"value\":%.0f,\"unit\":\"ms\",\"note\":\"least "
+        "%.0f; at most 100 asked for\"}\n",
+        ms[REPEATS / 2], ms[0]);
+}
+
 int main(void)
 {
     static uint8_t voxels[NX * NY * NZ];
@@ -89,6 +121,7 @@ int main(void)
     qsort(ms, REPEATS, sizeof *ms, by_size);
     printf("{\"name\":\"a simulation of 100,000 histories\",\"value\":%.0f,\"unit\":\"ms\",\"note\":\"least %.0f\"}\n",
            ms[REPEATS / 2], ms[0]);
+    measure_updates(input);
     input.n_histories = N_LONG;
     double long_ms = run(&input);
     printf("{\"name\":\"histories of a long simulation\",\"value\":%.0f,\"unit\":\"1/s\",\"note\":\"at least 400,000 "
