@@ -208,6 +208,29 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     await page.keyboard.press('Escape');
   });
 
+  later('the patient axes get numbers at their ticks, which go with the ticks and are undone in one step', async () => {
+    await open();
+    await page.locator('[data-view="1"] .view-all').click();
+    const dialog = page.getByRole('dialog', { name: 'Camera' });
+    const box = (name) => dialog.getByRole('checkbox', { name, exact: true });
+    const axesAre = (wanted) => until(async () => (await world.scene(room)).axes, wanted, 60000);
+    assert.equal(await box('Numbers').count(), 0, 'no axes, no numbers');
+    await box('Patient axes').check();
+    await box('Ticks').waitFor();
+    if (!(await box('Ticks').isChecked())) await box('Ticks').check();
+    assert.equal(await box('Numbers').isChecked(), false);
+    await box('Numbers').check();
+    await axesAre(({ visible, ticks, numbers }) => visible && ticks && numbers);
+    await full(page, 1);
+    await shoot(page, 'axis-numbers');
+    await box('Ticks').uncheck();
+    await box('Numbers').waitFor({ state: 'detached' });
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('Control+z'); // the ticks
+    await page.keyboard.press('Control+z'); // the numbers
+    await axesAre(({ ticks, numbers }) => ticks && !numbers);
+  });
+
   once('linked slices have as many mm per pixel and the crosshair at one place; one step to undo', async () => {
     await open();
     const scaleOf = async (view) => (await header(page, view)).pixels_per_mm;
