@@ -332,7 +332,7 @@ static struct transport_result turned_run(uint64_t seed, bool is_turned, uint64_
 static void errors_are_what_seeds_differ_by(void **state)
 {
     (void)state;
-    const uint64_t pairs = is_whole() ? 24 : 8;
+    const uint64_t pairs = is_whole() ? 24 : 12;
     double of[N_NOISY] = { 0 };
     for (uint64_t pair = 0; pair < pairs; pair++) {
         struct transport_result a = turned_run(300 + 2 * pair, false, 16000),
