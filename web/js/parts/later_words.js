@@ -1,4 +1,4 @@
-// The words of a CSV file that cannot be read, and of times in lists.
+// The words of a CSV file that cannot be read, of times in lists, and of who stated an identity.
 import { sentences } from './sentences.js';
 
 export const say = sentences('parts.later', {
@@ -6,5 +6,6 @@ export const say = sentences('parts.later', {
   afterQuote: 'Line {line}: text after a quotation mark.',
   roomOfDay: '{plan}, {day}',
   yesterday: 'yesterday {time}',
+  statedBy: 'stated by {by}, {date}',
   quoteOpen: 'Line {line}: a quotation mark is not closed.',
 });

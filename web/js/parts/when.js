@@ -14,6 +14,9 @@ export function day(ms, now = Date.now()) {
   return new Date(ms).toLocaleDateString(locale, { day: 'numeric', month: 'short', ...(isThisYear ? {} : { year: 'numeric' }) });
 }
 
+/** "stated by Anna Weiss, 27 Nov", of a patient's identity. @param {{by: string, time_ms: number}} said */
+export const statedWords = ({ by, time_ms: ms }) => say.statedBy({ by, date: day(ms) });
+
 /** When something was, as near as a list needs. */
 export function when(ms, now = Date.now()) {
   const days = Math.round((midnight(now) - midnight(ms)) / dayMs);

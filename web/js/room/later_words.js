@@ -22,7 +22,6 @@ export const say = sentences('room.later', {
   restarting: 'Not known yet: the renderer is being started again.',
   opening: 'Not known yet: the plan is being opened.',
   noDose: 'This plan has no dose.',
-  statedBy: 'stated by {by}, {date}',
   groupNoPlan: 'No plan stated',
   groupApproved: 'Plan {plan} · approved',
   groupUnapproved: 'Plan {plan} · unapproved',

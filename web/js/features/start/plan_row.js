@@ -2,11 +2,10 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { isOfServer } from '../../room/plans.js';
-import { statedWords } from '../../room/stated.js';
 import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';
-import { dicomDay, roomName, when } from '../../parts/when.js';
+import { dicomDay, roomName, statedWords, when } from '../../parts/when.js';
 import { say } from './later_words.js';
 import { whoWasIn } from './who_in.js';
 
@@ -48,8 +47,7 @@ function person(plan) {
   if (plan.is_phantom) return html`<div class="person"><span class="tag phantom">${say.phantom}</span></div>`;
   if (!plan.patient) return html`<div class="person unknown"><b>${say.unknown}</b><span>${say.notInFiles}</span></div>`;
   if (plan.stated) {
-    const words = statedWords(plan.stated);
-    return html`<div class="person"><b>${plan.patient}</b><span class="stated" title=${words}>${words}</span></div>`;
+    return html`<div class="person"><b>${plan.patient}</b><span class="stated">${statedWords(plan.stated)}</span></div>`;
   }
   return html`<div class="person"><b>${plan.patient}</b>${plan.n_patients > 1 ? html`<span class="err">${say.nPatients({ n: plan.n_patients })}</span>` : html`<span>${say.bornHidden}</span>`}</div>`;
 }
